@@ -1,0 +1,1 @@
+"""Data that the package ships: the robot, the object library, checkpoints and human statistics."""

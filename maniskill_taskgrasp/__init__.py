@@ -1,0 +1,7 @@
+"""Task-oriented dexterous grasping for ManiSkill3: a sentence in, a grasp of the named topology out.
+
+Importing the package registers `TaskGrasp-v0` with gymnasium by name only; ManiSkill itself is
+imported when the environment is made.
+"""
+
+__version__ = "0.1.0"
