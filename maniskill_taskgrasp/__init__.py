@@ -1,4 +1,4 @@
-"""Task-oriented dexterous grasping for ManiSkill3: a sentence in, a grasp of the named topology out.
+"""Task-oriented dexterous grasping for ManiSkill3: from a sentence to a grasp.
 
 Importing the package registers `TaskGrasp-v0` with gymnasium by name only; ManiSkill itself is
 imported when the environment is made.

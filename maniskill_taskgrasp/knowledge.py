@@ -15,12 +15,12 @@ from importlib.resources import files
 from maniskill_taskgrasp.errors import unknown_name
 
 PARAMETERS = ("force", "constraint", "task_class")
-"""Task parameters that the data give for an action (facts: CSV columns Force, Constraint, Class)."""
+"""Task parameters that the data give for an action (CSV columns Force, Constraint, Class)."""
 
 
 @dataclass(frozen=True)
 class Affordance:
-    """What can be measured of an object before it is grasped (a function of its name in the CSV)."""
+    """What can be measured of an object before it is grasped: a function of its name."""
 
     name: str
     dimensions_m: tuple[float, float, float]
@@ -72,7 +72,7 @@ class Knowledge:
             raise unknown_name("object", name, self.objects, "taskgrasp objects list") from None
 
     def actions_of(self, object_name: str) -> dict[str, int]:
-        """How often people did each action with the object: action -> grasps, most frequent first."""
+        """Action -> how often people did it with the object, most frequent first."""
         counts = {a: sum(n) for (o, a), n in self.pair_counts.items() if o == object_name}
         return dict(sorted(counts.items(), key=lambda item: (-item[1], item[0])))
 

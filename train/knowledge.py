@@ -8,7 +8,6 @@ from __future__ import annotations
 import collections
 import csv
 import json
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -76,7 +75,7 @@ def main(config: KnowledgeConfig) -> None:
         knowledge = condense(list(csv.DictReader(file)))
     partial = config.out.with_suffix(".partial")
     partial.write_text(json.dumps(knowledge, indent=None, separators=(",", ":")) + "\n", "utf-8")
-    os.replace(partial, config.out)
+    partial.replace(config.out)
 
 
 if __name__ == "__main__":
