@@ -1,0 +1,359 @@
+"""The robot's numbers, its files, and the robot SAPIEN makes of them."""
+
+import itertools
+import json
+import math
+import re
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+
+from maniskill_taskgrasp.agents.sawyer_ar10.ar10 import HAND_LINKS
+from maniskill_taskgrasp.agents.sawyer_ar10.build import build, default_folder
+from maniskill_taskgrasp.agents.sawyer_ar10.description import (
+    ARM_JOINT_NAMES,
+    COUPLED_JOINT_NAMES,
+    HAND_JOINT_NAMES,
+    PART_PRIMITIVES,
+    SAWYER_AR10,
+)
+from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
+from maniskill_taskgrasp.agents.sawyer_ar10.model import (
+    Box,
+    Cylinder,
+    inertia_of_primitives,
+    rotation,
+)
+
+MOVING = (*ARM_JOINT_NAMES, *HAND_JOINT_NAMES, *COUPLED_JOINT_NAMES)
+TIPS = tuple(link.name for link in SAWYER_AR10.links if link.name.endswith("_tip"))
+FK_TOLERANCE = 5e-4  # [m]
+
+
+@pytest.fixture(scope="module")
+def sheet(shared_dir):
+    """The fact sheet of the robot."""
+    return json.loads((shared_dir / "facts" / "robot.json").read_text())
+
+
+@pytest.fixture(scope="module")
+def loaded():
+    """The visual-less robot, loaded by ManiSkill's own loader with no render device."""
+    return load_robot("sawyer_ar10_collision.urdf")
+
+
+def load_robot(filename):
+    """ManiSkill articulation of one of the shipped files, alone in a CPU scene."""
+    import sapien
+    import torch
+    from mani_skill.envs.scene import ManiSkillScene
+    from mani_skill.envs.utils.system.backend import parse_sim_and_render_backend
+
+    sub_scene = sapien.Scene([sapien.physx.PhysxCpuSystem()])
+    backend = parse_sim_and_render_backend("physx_cpu", "none")
+    scene = ManiSkillScene([sub_scene], device=torch.device("cpu"), backend=backend)
+    loader = scene.create_urdf_loader()
+    loader.name = SAWYER_AR10.name
+    return loader.load(str(default_folder() / filename))
+
+
+def place(robot, posture):
+    """Put the loaded robot into `posture`, a dict of joint angles [rad]; the rest goes to zero."""
+    names = [joint.name for joint in robot.active_joints]
+    robot.set_qpos(np.array([[posture.get(name, 0.0) for name in names]], dtype=np.float32))
+
+
+def position(robot, link):
+    """(3,) [m] world position of a link's frame."""
+    return robot.links_map[link].pose.p[0].numpy()
+
+
+def chain_positions(joints, posture):
+    """(3,) [m] position of every link in the root, by an own product along a table of joints.
+
+    Args:
+        joints: dicts with name, parent, child, xyz, rpy, axis, parents before their children.
+        posture: joint angles [rad]; a joint that is not named stands at zero.
+    """
+    from scipy.spatial.transform import Rotation
+
+    poses = {"base": (np.zeros(3), Rotation.identity())}
+    for joint in joints:
+        origin, turn = poses[joint["parent"]]
+        angle = posture.get(joint["name"], 0.0)
+        spin = Rotation.from_rotvec(angle * np.array(joint["axis"]))
+        local = Rotation.from_euler("xyz", joint["rpy"])
+        poses[joint["child"]] = (origin + turn.apply(joint["xyz"]), turn * local * spin)
+    return {link: origin for link, (origin, _) in poses.items()}
+
+
+def coupled(hand_posture):
+    """`hand_posture` with the four distal joints where their link rods put them."""
+    distal = {
+        coupling.joint: coupling.ratio * hand_posture[coupling.source] + coupling.offset
+        for coupling in AR10.couplings
+    }
+    return hand_posture | distal
+
+
+# -- the files ---------------------------------------------------------------------------------
+
+
+def test_build_reproduces_the_committed_files(tmp_path):
+    """The shipped robot is what the code writes, byte for byte, no file more or less."""
+    build(tmp_path)
+    shipped = default_folder()
+    names = sorted(path.name for path in shipped.iterdir())
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    for name in names:
+        assert (tmp_path / name).read_bytes() == (shipped / name).read_bytes(), name
+
+
+def test_files_name_no_place_of_the_building_machine():
+    """No absolute path and no home folder got into a shipped file; all together stay small."""
+    files = list(default_folder().iterdir())
+    for path in files:
+        assert not re.search(rb"/(work|home|root|tmp|usr|Users)/", path.read_bytes()), path.name
+    assert sum(path.stat().st_size for path in files) < 3_000_000
+
+
+def test_collision_urdf_differs_by_its_visuals_alone():
+    """The file for machines without Vulkan is the full one minus every <visual>."""
+    full = ET.parse(default_folder() / "sawyer_ar10.urdf").getroot()
+    assert full.findall("link/visual")
+    for link in full.findall("link"):
+        for visual in link.findall("visual"):
+            link.remove(visual)
+    bare = ET.parse(default_folder() / "sawyer_ar10_collision.urdf").getroot()
+    assert not list(bare.iter("visual"))
+    strip = [ET.canonicalize(ET.tostring(tree), strip_text=True) for tree in (full, bare)]
+    assert strip[0] == strip[1]
+
+
+def test_urdf_has_no_mimic_and_only_meshes_that_exist():
+    """Mimic tags make SAPIEN's grasps unstable; a missing mesh would only show when rendering."""
+    tree = ET.parse(default_folder() / "sawyer_ar10.urdf")
+    assert not list(tree.iter("mimic"))
+    for mesh in tree.iter("mesh"):
+        assert (default_folder() / mesh.get("filename")).is_file()
+
+
+# -- the numbers -------------------------------------------------------------------------------
+
+
+def test_masses_and_arm_inertias_match_the_sheet(sheet):
+    """Mass and centre of mass are the sheet's on every link, and so is any inertia it states."""
+    for name, facts in sheet["links"].items():
+        inertia = SAWYER_AR10.link(name).inertia
+        if facts["mass"] is None:
+            assert inertia is None
+            continue
+        assert inertia is not None
+        assert inertia.mass == facts["mass"]
+        assert list(inertia.com) == facts["com"]
+        if facts["inertia_xx_yy_zz_xy_xz_yz"] is not None:
+            tensor = [getattr(inertia, term) for term in ("xx", "yy", "zz", "xy", "xz", "yz")]
+            assert tensor == facts["inertia_xx_yy_zz_xy_xz_yz"]
+
+
+def test_collision_primitives_match_the_sheet(sheet):
+    """Type, size, place and direction of every primitive are the sheet's."""
+    for name, facts in sheet["links"].items():
+        primitives = SAWYER_AR10.link(name).collisions
+        assert len(primitives) == len(facts["collision"])
+        for primitive, fact in zip(primitives, facts["collision"], strict=True):
+            np.testing.assert_allclose(primitive.xyz, fact["center"], atol=1e-9)
+            if isinstance(primitive, Box):
+                assert (list(primitive.size), list(primitive.rpy)) == (fact["size"], fact["rpy"])
+            else:
+                assert (primitive.radius, primitive.length) == (fact["radius"], fact["length"])
+                along = rotation(primitive.rpy)[:, 2]
+                np.testing.assert_allclose(along, np.eye(3)["xyz".index(fact["axis"])], atol=1e-9)
+
+
+def test_joint_limits_match_the_sheet(sheet):
+    """Range, speed and effort of all 21 moving joints are the sheet's, and so is the coupling."""
+    facts = {joint["name"]: joint for joint in sheet["joints"] if joint["type"] == "revolute"}
+    assert set(facts) == set(MOVING)
+    for name, fact in facts.items():
+        joint = SAWYER_AR10.joint(name)
+        for key in ("lower", "upper", "velocity", "effort"):
+            assert getattr(joint, key) == fact[key], (name, key)
+    couplings = {c.joint: [c.source, c.ratio, c.offset] for c in AR10.couplings}
+    assert couplings == {name: fact["mimic"] for name, fact in facts.items() if "mimic" in fact}
+
+
+def test_coupled_joints_stay_within_their_limits():
+    """Wherever a pip joint may stand, its link rod keeps the dip joint inside its range."""
+    for coupling in AR10.couplings:
+        source, joint = SAWYER_AR10.joint(coupling.source), SAWYER_AR10.joint(coupling.joint)
+        for angle in (source.lower, source.upper):
+            assert joint.lower <= coupling.ratio * angle + coupling.offset <= joint.upper
+
+
+def test_every_inertia_is_that_of_a_possible_body():
+    """Principal moments are positive and none exceeds the sum of the other two."""
+    for link in SAWYER_AR10.links:
+        if link.inertia is not None:
+            a, b, c = np.linalg.eigvalsh(link.inertia.matrix())
+            assert 0.0 < a <= b <= c <= (a + b) * (1.0 + 1e-9), link.name
+
+
+def test_inertia_of_a_box_cut_in_two_is_that_of_the_whole():
+    """Parallel axes: two halves, one of them turned about the cut's axis, make up the box again."""
+    whole = Box(name="whole", size=(0.2, 0.1, 0.1), xyz=(0.3, 0.0, 0.0))
+    near = Box(name="near", size=(0.1, 0.1, 0.1), xyz=(0.25, 0.0, 0.0))
+    far = Box(name="far", size=(0.1, 0.1, 0.1), xyz=(0.35, 0.0, 0.0), rpy=(math.pi / 2, 0.0, 0.0))
+    expected = inertia_of_primitives(2.0, (0.3, 0.0, 0.0), [whole]).matrix()
+    found = inertia_of_primitives(2.0, (0.3, 0.0, 0.0), [near, far]).matrix()
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+    closed_form = 2.0 / 12.0 * np.diag([0.02, 0.05, 0.05])
+    np.testing.assert_allclose(expected, closed_form, atol=1e-12)
+
+
+def test_inertia_of_a_lying_cylinder_is_turned_with_it():
+    """A cylinder along y has its small moment about y."""
+    lying = Cylinder(name="bar", radius=0.01, length=0.3, rpy=(-math.pi / 2, 0.0, 0.0))
+    inertia = inertia_of_primitives(1.0, (0.0, 0.0, 0.0), [lying])
+    assert inertia.yy == pytest.approx(0.01**2 / 2)
+    assert inertia.xx == inertia.zz == pytest.approx((3 * 0.01**2 + 0.3**2) / 12)
+
+
+def test_tree_has_one_root_and_no_orphan():
+    """Every link but the root has exactly one parent, and parents come before their children."""
+    known = {SAWYER_AR10.root}
+    for joint in SAWYER_AR10.joints:
+        assert joint.parent in known, joint.name
+        assert joint.child not in known, joint.name
+        known.add(joint.child)
+    assert known == {link.name for link in SAWYER_AR10.links}
+
+
+def test_parts_share_out_the_hand():
+    """The six sensed parts, in observation order, own every solid link of the hand once."""
+    assert list(PART_PRIMITIVES) == ["palm", "index", "middle", "ring", "little", "thumb"]
+    owned = [link for links in AR10.part_links.values() for link in links]
+    solid = [link.name for link in HAND_LINKS if link.collisions]
+    assert sorted(owned) == sorted(solid)
+    for part, entries in PART_PRIMITIVES.items():
+        assert {link for link, _ in entries} == set(AR10.part_links[part])
+
+
+# -- the loaded robot --------------------------------------------------------------------------
+
+
+def test_loads_with_21_moving_joints_their_limits_and_masses(loaded):
+    """ManiSkill makes of the file the joints, ranges and masses that the description states."""
+    assert sorted(joint.name for joint in loaded.active_joints) == sorted(MOVING)
+    limits = loaded.get_qlimits()[0].numpy()
+    for joint, found in zip(loaded.active_joints, limits, strict=True):
+        stated = SAWYER_AR10.joint(joint.name)
+        np.testing.assert_allclose(found, [stated.lower, stated.upper], atol=1e-6)
+    for link in SAWYER_AR10.links:
+        mass = loaded.links_map[link.name].mass[0].item()
+        assert mass == pytest.approx(link.inertia.mass if link.inertia else 1e-5, rel=1e-6)
+
+
+def test_loaded_collision_shapes_point_the_stated_way(loaded):
+    """The loader turns cylinders onto the stated axis and keeps boxes as they are."""
+    for link in SAWYER_AR10.links:
+        shapes = loaded.links_map[link.name]._objs[0].collision_shapes
+        assert len(shapes) == len(link.collisions)
+        for shape, primitive in zip(shapes, link.collisions, strict=True):
+            matrix = shape.local_pose.to_transformation_matrix()
+            np.testing.assert_allclose(matrix[:3, 3], primitive.xyz, atol=1e-6)
+            turn = rotation(primitive.rpy)
+            if isinstance(primitive, Box):
+                np.testing.assert_allclose(shape.half_size, np.array(primitive.size) / 2, atol=1e-7)
+                np.testing.assert_allclose(matrix[:3, :3], turn, atol=1e-5)
+            else:  # SAPIEN's cylinders run along their own x.
+                found = [shape.radius, 2 * shape.half_length]
+                np.testing.assert_allclose(found, [primitive.radius, primitive.length], atol=1e-6)
+                assert abs(matrix[:3, 0] @ turn[:, 2]) > 1 - 1e-5
+
+
+HAND_REFERENCES = {
+    "open (all joints at lower limit)": {
+        name: SAWYER_AR10.joint(name).lower for name in HAND_JOINT_NAMES
+    },
+    "half (mcp=pip=0.87, thumb_cmc 1.5, thumb_flex 0.92)": {
+        name: {"thumb_cmc": 1.5, "thumb_flex": 0.92}.get(name, 0.87) for name in HAND_JOINT_NAMES
+    },
+    "closed (all at upper limit)": {
+        name: SAWYER_AR10.joint(name).upper for name in HAND_JOINT_NAMES
+    },
+}
+
+
+@pytest.mark.parametrize("reference", HAND_REFERENCES)
+def test_hand_kinematics_match_the_reference(loaded, sheet, reference):
+    """Every fingertip of the loaded hand is within 0.5 mm of the reference table, in hand_base."""
+    place(loaded, coupled(HAND_REFERENCES[reference]))
+    to_hand = loaded.links_map["hand_base"].pose.inv()
+    table = sheet["fk_reference"]["hand_base frame, coupled DIP"][reference]
+    assert set(table) == set(TIPS)
+    for tip, expected in table.items():
+        found = (to_hand * loaded.links_map[tip].pose).p[0].numpy()
+        assert np.linalg.norm(found - expected) <= FK_TOLERANCE, tip
+
+
+def test_arm_kinematics_match_the_reference(loaded, sheet):
+    """Wrist plate and palm of the loaded arm are within 0.5 mm and 0.001 of the reference table."""
+    for name, entry in sheet["fk_reference"]["arm, in base frame"].items():
+        place(loaded, dict(zip(ARM_JOINT_NAMES, entry["q"], strict=True)))
+        for link in ("hand_base", "palm_frame"):
+            distance = np.linalg.norm(position(loaded, link) - entry[f"{link}_xyz"])
+            assert distance <= FK_TOLERANCE, (name, link)
+        matrix = loaded.links_map["hand_base"].pose.to_transformation_matrix()[0].numpy()
+        np.testing.assert_allclose(matrix[:3, :3], entry["hand_base_R_rows"], atol=1e-3)
+
+
+def test_random_postures_match_an_independent_chain(loaded, sheet):
+    """In 100 random postures every fingertip and arm link is where the sheet's joint table says."""
+    generator = np.random.default_rng(3)
+    for _ in range(100):
+        posture = {
+            name: generator.uniform(SAWYER_AR10.joint(name).lower, SAWYER_AR10.joint(name).upper)
+            for name in MOVING
+        }
+        place(loaded, posture)
+        for link, expected in chain_positions(sheet["joints"], posture).items():
+            assert np.linalg.norm(position(loaded, link) - expected) <= FK_TOLERANCE, link
+
+
+def test_named_arm_postures_touch_nothing(sheet):
+    """With self-collision on, no two links touch at zero, neutral or on the arm paths."""
+    postures = [
+        [0.0] * 7,
+        sheet["fk_reference"]["arm, in base frame"]["manufacturer neutral"]["q"],
+        *itertools.chain.from_iterable(
+            path.values()
+            for name, path in sheet["arm_paths_in_base_frame_keyed_by_palm_height"].items()
+            if name != "palm_down x=1.05"
+        ),
+    ]
+    robot = load_robot("sawyer_ar10_collision.urdf")
+    scene = robot.scene.sub_scenes[0]
+    hand = HAND_REFERENCES["open (all joints at lower limit)"]
+    for posture in postures:
+        place(robot, coupled(hand) | dict(zip(ARM_JOINT_NAMES, posture, strict=True)))
+        robot.set_qvel(np.zeros((1, len(MOVING)), dtype=np.float32))
+        scene.physx_system.timestep = 1e-4
+        scene.step()
+        touching = {
+            tuple(sorted(body.name for body in contact.bodies))
+            for contact in scene.get_contacts()
+            if any(point.separation < 0 for point in contact.points)
+        }
+        assert not touching, (posture, touching)
+
+
+def test_default_folder_is_inside_the_package():
+    """The shipped files are found through the package, also when it is installed elsewhere."""
+    assert default_folder().is_dir()
+    assert default_folder().relative_to(Path(default_folder().anchor)).parts[-2:] == (
+        "robots",
+        "sawyer_ar10",
+    )
