@@ -11,6 +11,16 @@ INDEX, MIDDLE, RING, LITTLE = 2, 3, 4, 5
 OPPOSITIONS = ("Pad", "Palm", "Side")
 PIPS = ("Power", "Precision", "Intermediate")
 
+FINGER_NAMES = {INDEX: "index", MIDDLE: "middle", RING: "ring", LITTLE: "little"}
+
+# Their digit numbers name one finger only; what stands against it is in the fact sheet (4.1).
+_SIDE_PARTS = {
+    "Intermediate abd 2": ("index", "middle"),
+    "Intermediate add 2": ("thumb", "index"),
+    "Intermediate add 3": ("thumb", "index", "middle"),
+    "Precision side abd 3": ("thumb", "index", "middle"),
+}
+
 _NAME = re.compile(r"(Power|Intermediate|Precision)(?: (palm|pad|side))? (abd|add) (\d)(?:-(\d))?")
 
 
@@ -35,6 +45,16 @@ class Topology:
     def slug(self) -> str:
         """The name as an identifier, e.g. "precision_pad_abd_2_3"."""
         return re.sub(r"[ -]", "_", self.name.lower())
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Parts of the hand that must press the object, of palm, index ... little and thumb."""
+        fingers = tuple(FINGER_NAMES[finger] for finger in self.fingers)
+        if self.opposition == "Side":
+            return _SIDE_PARTS[self.name]
+        if self.opposition == "Pad":
+            return ("thumb", *fingers)
+        return ("palm", "thumb", *fingers) if self.thumb_abducted else ("palm", *fingers)
 
 
 def _parse(index: int, name: str) -> Topology:

@@ -1,0 +1,84 @@
+"""Closes the hand along a topology's joint synergy: activation 0 is the preshape, 1 is closed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from gymnasium import spaces
+from torch import Tensor
+
+from maniskill_taskgrasp.agents.controllers.coupled_hand import (
+    CoupledHandController,
+    CoupledHandControllerConfig,
+)
+
+
+def synergy_to_qpos(activation: Tensor, preshape: Tensor, closing: Tensor) -> Tensor:
+    """Posture that an activation asks for; a joint with closing = preshape holds still.
+
+    Args:
+        activation: (num_envs, num_actuators), clipped to [0, 1].
+        preshape: (num_envs, num_actuators) [rad] posture at activation 0.
+        closing: (num_envs, num_actuators) [rad] posture at activation 1.
+
+    Returns:
+        (num_envs, num_actuators) [rad]
+    """
+    return preshape + activation.clamp(0, 1) * (closing - preshape)
+
+
+class JointSynergyController(CoupledHandController):
+    """Activations in [0, 1] of the posture pair that `set_postures` gave each environment."""
+
+    config: JointSynergyControllerConfig
+
+    def _initialize_joints(self) -> None:
+        super()._initialize_joints()
+        shape = (self.scene.num_envs, self._num_actuators)
+        self.preshape = torch.zeros(shape, device=self.device)
+        self.closing = torch.zeros(shape, device=self.device)
+        spread = np.asarray(self.config.spread, dtype=np.float32)
+        self._spread = torch.from_numpy(spread).to(self.device)
+
+    def _initialize_action_space(self) -> None:
+        num_actions = len(self.config.spread)
+        self.single_action_space = spaces.Box(0.0, 1.0, (num_actions,), dtype=np.float32)
+
+    def set_postures(self, env_idx: Tensor, preshape: Tensor, closing: Tensor) -> None:
+        """Give environments the postures of their topology.
+
+        Args:
+            env_idx: (n,) environments.
+            preshape: (n, num_actuators) [rad].
+            closing: (n, num_actuators) [rad].
+        """
+        self.preshape[env_idx] = preshape.to(self.preshape)
+        self.closing[env_idx] = closing.to(self.closing)
+
+    def wanted_qpos(self, action: Tensor) -> Tensor:
+        return synergy_to_qpos(action @ self._spread, self.preshape, self.closing)
+
+
+@dataclass
+class JointSynergyControllerConfig(CoupledHandControllerConfig):
+    """`spread` (num_actions, num_actuators) says which actuators each action number drives."""
+
+    spread: tuple[tuple[float, ...], ...] = ()
+    controller_cls = JointSynergyController
+
+
+def spread_all(num_actuators: int) -> tuple[tuple[float, ...], ...]:
+    """One number an actuator."""
+    return tuple(map(tuple, np.eye(num_actuators).tolist()))
+
+
+def spread_moving(moving: np.ndarray) -> tuple[tuple[float, ...], ...]:
+    """One number for each actuator that moves; the others hold their preshape."""
+    return tuple(map(tuple, np.eye(len(moving))[moving].tolist()))
+
+
+def spread_one(num_actuators: int) -> tuple[tuple[float, ...], ...]:
+    """One number for the whole hand."""
+    return ((1.0,) * num_actuators,)

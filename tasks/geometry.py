@@ -1,0 +1,70 @@
+"""Small batched rotations in torch: quaternions are wxyz, as SAPIEN's."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+
+def quat_multiply(a: Tensor, b: Tensor) -> Tensor:
+    """(..., 4) wxyz product: first b, then a."""
+    aw, ax, ay, az = a.unbind(-1)
+    bw, bx, by, bz = b.unbind(-1)
+    return torch.stack(
+        [
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        ],
+        -1,
+    )
+
+
+def quat_to_matrix(quat: Tensor) -> Tensor:
+    """(..., 3, 3) rotation of a unit quaternion (..., 4) wxyz."""
+    w, x, y, z = quat.unbind(-1)
+    rows = [
+        torch.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], -1),
+        torch.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], -1),
+        torch.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], -1),
+    ]
+    return torch.stack(rows, -2)
+
+
+def axis_angle_matrix(axis: int, angle: Tensor) -> Tensor:
+    """(..., 3, 3) rotation by `angle` (...) [rad] about a coordinate axis (0, 1 or 2)."""
+    cos, sin = angle.cos(), angle.sin()
+    matrix = torch.zeros(*angle.shape, 3, 3, dtype=angle.dtype, device=angle.device)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix[..., axis, axis] = 1.0
+    matrix[..., i, i] = cos
+    matrix[..., j, j] = cos
+    matrix[..., i, j] = -sin
+    matrix[..., j, i] = sin
+    return matrix
+
+
+def yaw_quat(yaw: Tensor) -> Tensor:
+    """(..., 4) wxyz rotation by `yaw` (...) [rad] about z."""
+    zero = torch.zeros_like(yaw)
+    return torch.stack([(yaw / 2).cos(), zero, zero, (yaw / 2).sin()], -1)
+
+
+def rotation_vector(matrix: Tensor) -> Tensor:
+    """(..., 3) [rad] axis times angle of a rotation matrix (..., 3, 3); angles below pi."""
+    skew = torch.stack(
+        [
+            matrix[..., 2, 1] - matrix[..., 1, 2],
+            matrix[..., 0, 2] - matrix[..., 2, 0],
+            matrix[..., 1, 0] - matrix[..., 0, 1],
+        ],
+        -1,
+    )
+    sine = skew.norm(dim=-1) / 2
+    cosine = (matrix.diagonal(dim1=-2, dim2=-1).sum(-1) - 1) / 2
+    angle = torch.atan2(sine, cosine)
+    scale = torch.where(
+        sine > 1e-7, angle / (2 * sine).clamp(min=1e-12), torch.full_like(sine, 0.5)
+    )
+    return skew * scale[..., None]
