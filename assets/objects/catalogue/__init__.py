@@ -1,0 +1,1 @@
+"""Recipes of the catalogue objects, a chapter per kind of thing."""

@@ -1,0 +1,93 @@
+"""Which objects there are, and how one is got by name or from a mesh file."""
+
+from __future__ import annotations
+
+import json
+from functools import cache, partial
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from maniskill_taskgrasp.assets.objects.model import ObjectModel
+from maniskill_taskgrasp.assets.objects.recipe import FRICTION
+from maniskill_taskgrasp.assets.objects.store import Json, part_from_json, pose_from_json
+from maniskill_taskgrasp.errors import unknown_name
+from maniskill_taskgrasp.knowledge import load_knowledge
+
+if TYPE_CHECKING:
+    import trimesh
+
+SPLITS = ("train", "test")
+
+
+@cache
+def _catalogue() -> dict[str, Json]:
+    folder = files("maniskill_taskgrasp.assets.objects")
+    objects: dict[str, Json] = json.loads(folder.joinpath("library.json").read_text("utf-8"))
+    return objects
+
+
+@cache
+def _split() -> dict[str, str]:
+    folder = files("maniskill_taskgrasp.assets.objects")
+    lists = json.loads(folder.joinpath("split.json").read_text("utf-8"))
+    return {name: split for split in SPLITS for name in lists[split]}
+
+
+def names(split: str | None = None) -> tuple[str, ...]:
+    """Sorted names of the catalogue's objects, of one split if it is given.
+
+    Raises:
+        InputError: no split has that name.
+    """
+    if split not in (None, "all", *SPLITS):
+        raise unknown_name("split", split, ("all", *SPLITS), "train, test and all")
+    known = sorted(_catalogue())
+    return tuple(n for n in known if split in (None, "all") or _split()[n] == split)
+
+
+@cache
+def load(name: str) -> ObjectModel:
+    """The object of that name.
+
+    Raises:
+        InputError: no object has that name.
+    """
+    if name not in _catalogue():
+        raise unknown_name("object", name, _catalogue(), "taskgrasp objects list")
+    return _from_catalogue(name, _catalogue()[name])
+
+
+def _from_catalogue(name: str, data: Json) -> ObjectModel:
+    affordance = load_knowledge().objects[name]
+    return ObjectModel(
+        name=name,
+        extents_m=tuple(data["extents_m"]),
+        mass_kg=affordance.mass_kg,
+        com=np.array(data["com"]),
+        inertia=np.array(data["unit_inertia"]) * affordance.mass_kg,
+        friction=FRICTION[data["material"]],
+        rigidity=affordance.rigidity,
+        affordance=affordance,
+        split=_split()[name],
+        parts=tuple(part_from_json(part) for part in data["parts"]),
+        resting_poses=tuple(pose_from_json(pose) for pose in data["resting_poses"]),
+        grasped_center=tuple(data["grasped_center"]),
+        grasped_extents_m=tuple(data["grasped_extents_m"]),
+        material=data["material"],
+        category=data["category"],
+        source="parametric model, dimensions and mass after the human grasping data",
+        licence="Apache-2.0",
+        volume_m3=data["volume_m3"],
+        mesh=partial(_catalogue_mesh, name),
+    )
+
+
+@cache
+def _catalogue_mesh(name: str) -> trimesh.Trimesh:
+    from maniskill_taskgrasp.assets.objects.compiler import shape
+    from maniskill_taskgrasp.assets.objects.recipe import load_recipes
+    from maniskill_taskgrasp.assets.objects.solid import to_mesh
+
+    return to_mesh(shape(load_recipes()[name]))

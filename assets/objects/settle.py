@@ -1,0 +1,102 @@
+"""Does an object stay where it is put? Two seconds of physics, measured, for many at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from maniskill_taskgrasp.assets.objects.actor import add_fixture, add_object
+from maniskill_taskgrasp.assets.objects.geometry import quat_to_matrix
+from maniskill_taskgrasp.assets.objects.model import ObjectModel
+from maniskill_taskgrasp.assets.objects.presentation import Presentation
+
+if TYPE_CHECKING:
+    import sapien
+
+SECONDS = 2.0
+TIMESTEP = 0.01  # [s] that of the task.
+SPACING = 1.0  # [m] between neighbours, too far to touch.
+MAX_SHIFT = 0.003  # [m]
+MAX_TURN = np.radians(3.0)
+
+
+@dataclass(frozen=True)
+class Rest:
+    """What became of an object that was put down."""
+
+    shift_m: float
+    """Travel of the origin."""
+    turn_rad: float
+    speed: float
+    """[m/s] at the end."""
+    quat_wxyz: tuple[float, float, float, float]
+    """World orientation at the end."""
+    height: float
+    """[m] of the origin at the end."""
+
+    @property
+    def stayed(self) -> bool:
+        return self.shift_m <= MAX_SHIFT and self.turn_rad <= MAX_TURN
+
+
+def settle(
+    cases: Sequence[tuple[ObjectModel, Presentation]], seconds: float = SECONDS
+) -> list[Rest]:
+    """Put every object down where its presentation says, in one scene, and measure the rest."""
+    import sapien
+
+    system = _system()
+    scene = sapien.Scene([system])
+    material = sapien.physx.PhysxMaterial(0.6, 0.6, 0.0)
+    ground = scene.create_actor_builder()
+    ground.add_plane_collision(sapien.Pose(q=[0.7071068, 0, -0.7071068, 0]), material)
+    ground.build_static("table")
+    columns = int(np.ceil(np.sqrt(len(cases))))
+    bodies = []
+    for index, (model, presentation) in enumerate(cases):
+        place = np.array([index % columns, index // columns, 0]) * SPACING
+        if presentation.parts:
+            fixture = scene.create_actor_builder()
+            add_fixture(fixture, presentation, visual=False)
+            fixture.set_initial_pose(sapien.Pose(place))
+            fixture.build_static(f"fixture {index}")
+        builder = scene.create_actor_builder()
+        add_object(builder, model, visual=False)
+        start = sapien.Pose(place + presentation.position, presentation.quat_wxyz)
+        builder.set_initial_pose(start)
+        bodies.append((builder.build(f"object {index}"), start))
+    for _ in range(round(seconds / TIMESTEP)):
+        system.step()
+    return [_measure(entity, start) for entity, start in bodies]
+
+
+def _system() -> sapien.physx.PhysxCpuSystem:
+    """CPU physics with the task's settings (facts: 100 Hz, TGS, 15 iterations, 5 mm offset)."""
+    import sapien
+
+    sapien.physx.set_scene_config(enable_tgs=True, enable_pcm=True)
+    sapien.physx.set_body_config(solver_position_iterations=15, solver_velocity_iterations=1)
+    sapien.physx.set_shape_config(contact_offset=0.005, rest_offset=0.0)
+    system = sapien.physx.PhysxCpuSystem()
+    system.timestep = TIMESTEP
+    return system
+
+
+def _measure(entity: sapien.Entity, start: sapien.Pose) -> Rest:
+    import sapien
+
+    body = entity.find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
+    before, after = quat_to_matrix(start.q), quat_to_matrix(entity.pose.q)
+    cosine = (np.trace(before.T @ after) - 1) / 2
+    quat: NDArray[np.float64] = np.asarray(entity.pose.q, dtype=float)
+    return Rest(
+        shift_m=float(np.linalg.norm(entity.pose.p - start.p)),
+        turn_rad=float(np.arccos(np.clip(cosine, -1, 1))),
+        speed=float(np.linalg.norm(body.linear_velocity)),
+        quat_wxyz=(float(quat[0]), float(quat[1]), float(quat[2]), float(quat[3])),
+        height=float(entity.pose.p[2]),
+    )
