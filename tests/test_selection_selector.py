@@ -1,0 +1,139 @@
+"""The shipped selector: what `Selector.load` and `rank` promise the rooms that use them."""
+
+import subprocess
+import sys
+import time
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.knowledge import Affordance, load_knowledge
+from maniskill_taskgrasp.selection import Selector
+from maniskill_taskgrasp.selection.selector import shrunk
+
+MUG = Affordance("my own mug", (0.12, 0.09, 0.08), 0.3, "b/c", "rigid", "a", "prolate", "cylinder")
+
+
+@pytest.fixture(scope="module")
+def selector():
+    return Selector.load()
+
+
+def test_rank_is_one_distribution(selector):
+    """Topologies, oppositions and PIP classes are sums of the same 15 numbers."""
+    strategy = selector.rank("screwdriver", "turning")
+    assert len(strategy.probabilities) == 15
+    assert sum(strategy.probabilities) == pytest.approx(1)
+    assert min(strategy.probabilities) > 0
+    assert sum(strategy.opposition.values()) == pytest.approx(1)
+    assert sum(strategy.pip.values()) == pytest.approx(1)
+    ranked = [strategy.probabilities[t.index] for t in strategy.ranked()]
+    assert ranked == sorted(ranked, reverse=True)
+
+
+def test_rank_follows_strong_evidence(selector):
+    """Where people were seen often, their commonest grasp comes first and evidence counts rows."""
+    knowledge = load_knowledge()
+    for pair, counts in knowledge.pair_counts.items():
+        if sum(counts) >= 100:
+            strategy = selector.rank(*pair)
+            assert strategy.evidence == sum(counts)
+            assert strategy.ranked()[0].index == int(np.argmax(counts))
+
+
+def test_transfer_request_is_the_mixture_of_the_objects_own_actions(selector):
+    """rank(object, None) equals the weighted mean of rank(object, action)."""
+    weights = load_knowledge().actions_of("hammer")
+    parts = [np.array(selector.rank("hammer", action).probabilities) for action in weights]
+    mean = np.average(parts, axis=0, weights=list(weights.values()))
+    np.testing.assert_allclose(selector.rank("hammer", None).probabilities, mean, atol=1e-12)
+    np.testing.assert_allclose(selector.rank("hammer", weights).probabilities, mean, atol=1e-12)
+
+
+def test_imported_object_is_ranked_without_evidence(selector):
+    """An object nobody filmed still gets a distribution, with evidence 0."""
+    for action in ("drinking", None):
+        strategy = selector.rank(MUG, action)
+        assert strategy.evidence == 0
+        assert sum(strategy.probabilities) == pytest.approx(1)
+
+
+def test_every_known_pair_of_names_is_ranked(selector):
+    """No name of the data set is refused, floppy objects included."""
+    knowledge = load_knowledge()
+    for name in knowledge.objects:
+        assert np.isfinite(selector.rank(name, "holding").probabilities).all()
+    for name in knowledge.actions:
+        assert np.isfinite(selector.rank("towel", name).probabilities).all()
+
+
+@pytest.mark.parametrize(
+    ("obj", "action", "parameters"),
+    [
+        ("hamer", "turning", None),
+        ("hammer", "hamering", None),
+        ("hammer", {"turning": -1.0}, None),
+        ("hammer", {"turning": float("nan")}, None),
+        ("hammer", {}, None),
+        ("hammer", {"turning": 0.0}, None),
+        ("hammer", "turning", {"force": "enormous"}),
+        ("hammer", "turning", {"speed": "fast"}),
+    ],
+)
+def test_bad_input_is_one_line(selector, obj, action, parameters):
+    """A name or weight that cannot be used is refused with one line."""
+    with pytest.raises(InputError) as caught:
+        selector.rank(obj, action, parameters)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("damage", ["missing", "empty", "truncated", "text", "other"])
+def test_bad_checkpoint_is_input_error(tmp_path, damage):
+    """A missing, damaged or foreign file never becomes a selector."""
+    import torch
+
+    path = tmp_path / "selector.pt"
+    if damage == "empty":
+        path.write_bytes(b"")
+    elif damage == "truncated":
+        whole = files("maniskill_taskgrasp.assets").joinpath("checkpoints/selector.pt").read_bytes()
+        path.write_bytes(whole[: len(whole) // 2])
+    elif damage == "text":
+        path.write_text("not a checkpoint")
+    elif damage == "other":
+        torch.save({"agent": torch.zeros(3)}, path)
+    with pytest.raises(InputError) as caught:
+        Selector.load(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_shrunk_closed_form():
+    """No rows give the model, many rows their frequencies, a rows the halfway point."""
+    model = np.full(15, 1 / 15)
+    counts = np.zeros(15)
+    np.testing.assert_allclose(shrunk(counts, model, 3.0), model)
+    counts[4] = 3
+    np.testing.assert_allclose(shrunk(counts, model, 3.0)[4], (3 + 3 / 15) / 6)
+    np.testing.assert_allclose(shrunk(counts * 1e9, model, 3.0)[4], 1, atol=1e-6)
+
+
+def test_one_selection_is_fast(selector):
+    """A selection takes at most 5 ms on one core, the median of many."""
+    times = []
+    for _ in range(101):
+        start = time.perf_counter()
+        selector.rank("towel", "turning")
+        times.append(time.perf_counter() - start)
+    assert np.median(times) <= 0.005
+
+
+def test_loading_does_not_import_the_simulator():
+    """The front end starts without ManiSkill."""
+    code = (
+        "import sys; from maniskill_taskgrasp.selection import Selector; "
+        "assert 'torch' not in sys.modules; Selector.load(); "
+        "sys.exit(any(m in sys.modules for m in ('mani_skill', 'sapien', 'sklearn')))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
