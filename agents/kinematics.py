@@ -34,12 +34,14 @@ class ArticulationKinematics:
         self,
         articulation: object,
         link_names: Sequence[str] | None = None,
+        joint_names: Sequence[str] | None = None,
         device: torch.device | str = "cpu",
     ) -> None:
         """
         Args:
             articulation: a `sapien.physx.PhysxArticulation`.
             link_names: what to call its links, in its own order; its own names if None.
+            joint_names: what to call its active joints, in its own order.
             device: where the results live.
         """
         links = articulation.links  # type: ignore[attr-defined]
@@ -53,6 +55,7 @@ class ArticulationKinematics:
             place[id_of(link.joint.parent_link)] if link.joint.parent_link is not None else -1
             for link in links
         ]
+        self._columns = dict(zip(joint_names or active, active.values(), strict=True))
         self._column = [active.get(link.joint.name, -1) for link in links]
         self._kind = [_KINDS[link.joint.type] for link in links]
         before = np.stack([link.joint.pose_in_parent.to_transformation_matrix() for link in links])
@@ -66,8 +69,17 @@ class ArticulationKinematics:
     @classmethod
     def of(cls, robot: Articulation) -> ArticulationKinematics:
         """Kinematics of a ManiSkill articulation, with its link names, on its device."""
-        names = [link.name for link in robot.links]
-        return cls(robot._objs[0], names, robot.device)
+        links = [link.name for link in robot.links]
+        joints = [joint.name for joint in robot.active_joints]
+        return cls(robot._objs[0], links, joints, robot.device)
+
+    def link_index(self, link: str) -> int:
+        """Place of a link in every result."""
+        return self._index[link]
+
+    def column(self, joint: str) -> int:
+        """Place of an active joint in a posture."""
+        return self._columns[joint]
 
     def _by_depth(self) -> list[tuple[Tensor, Tensor, Tensor, Tensor]]:
         """Links of each depth below the root with their parents, columns and joint kinds."""

@@ -16,9 +16,12 @@ from mani_skill.utils.structs import Actor
 from mani_skill.utils.structs.pose import Pose
 from torch import Tensor
 
+from maniskill_taskgrasp.agents.controllers.arm_path import ArmPathController
 from maniskill_taskgrasp.agents.controllers.joint_synergy import JointSynergyController
+from maniskill_taskgrasp.agents.controllers.palm_motion import PalmResidualController
 from maniskill_taskgrasp.agents.hand import HandDescription
 from maniskill_taskgrasp.agents.sawyer_ar10.control_modes import ARM_JOINTS, control_modes
+from maniskill_taskgrasp.agents.sawyer_ar10.description import PART_PRIMITIVES
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.topology import TOPOLOGIES
 
@@ -44,6 +47,7 @@ class SawyerAR10(BaseAgent):
 
     uid = "sawyer_ar10"
     hand: HandDescription = AR10
+    part_primitives = PART_PRIMITIVES
     urdf_path = _robot_file("sawyer_ar10.urdf")
     # Rubber against a hard object; the solver averages the two sides' coefficients.
     urdf_config = {  # noqa: RUF012  (ManiSkill reads a class attribute.)
@@ -131,7 +135,8 @@ class SawyerAR10(BaseAgent):
         }
         self.actuator_indices = self._indices(self.hand.actuators)
         self.arm_indices = self._indices(ARM_JOINTS)
-        self.topology_index = torch.zeros(self.scene.num_envs, dtype=torch.long, device=self.device)
+        self.thumb_rotation = self.hand.actuators.index(self.hand.thumb_rotation)
+        self.finger_pip = [self.hand.actuators.index(c.source) for c in self.hand.couplings]
 
     def _indices(self, names: tuple[str, ...]) -> Tensor:
         order = {joint.name: i for i, joint in enumerate(self.robot.active_joints)}
@@ -141,9 +146,24 @@ class SawyerAR10(BaseAgent):
         """Reset to `init_qpos`, else to `rest`: all-zero lies outside the hand's joint limits."""
         super().reset(self.keyframes["rest"].qpos if init_qpos is None else init_qpos)
 
-    def set_postures(self, env_idx: Tensor, preshape: Tensor, closing: Tensor) -> None:
-        """Give environments the posture pair (n, num_actuators) [rad] of their topology."""
-        hand = self.controller.controllers["hand"]
+    def set_plan(
+        self, env_idx: Tensor, path: Tensor, preshape: Tensor, closing: Tensor, open_steps: int
+    ) -> None:
+        """Give environments their arm path and postures; modes without a plan ignore it.
+
+        Args:
+            env_idx: (n,) environments.
+            path: (n, num_steps, 7) [rad] arm waypoints, one a control step.
+            preshape: (n, num_actuators) [rad] hand posture at activation 0.
+            closing: (n, num_actuators) [rad] hand posture at activation 1.
+            open_steps: control steps during which a palm residual may change.
+        """
+        controllers = self.controller.controllers
+        arm, hand = controllers["arm"], controllers["hand"]
+        if isinstance(arm, ArmPathController):
+            arm.set_path(env_idx, path)
+        if isinstance(arm, PalmResidualController):
+            arm.open_steps[env_idx] = open_steps
         if isinstance(hand, JointSynergyController):
             hand.set_postures(env_idx, preshape, closing)
 

@@ -1,0 +1,99 @@
+"""What became of a grasp: running statistics of an episode, and its failure class."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+from maniskill_taskgrasp.tasks.phases import HELD_STEPS, LIFT_START, MAX_EPISODE_STEPS
+from maniskill_taskgrasp.tasks.rewards import CONTACT_FORCE
+
+FAILURES = (
+    "none",
+    "no_contact",
+    "not_lifted",
+    "slipped",
+    "dropped",
+    "unstable",
+    "unreachable",
+)
+LIFT_HEIGHT = 0.20  # [m] rise of the object that counts as lifted (paper, section III).
+OFF_TABLE = 0.03  # [m] rise at which the object has left its support.
+WILD_SPEED = 10.0  # [m/s] no object on a table moves so fast: the physics blew up.
+SETTLED = 0.5  # [s] over which contacts are averaged for the form.
+MEMORY = 0.8  # Weight of the past in the running mean of forces; 10 steps leave 11 % of it.
+
+
+class Outcome:
+    """Per-environment record of the running episode; every field is (num_envs, ...)."""
+
+    def __init__(self, num_envs: int, num_links: int, device: torch.device) -> None:
+        self.touched = torch.zeros(num_envs, dtype=torch.bool, device=device)
+        self.max_lift = torch.zeros(num_envs, device=device)
+        self.held_steps = torch.zeros(num_envs, dtype=torch.long, device=device)
+        self.was_up = torch.zeros(num_envs, dtype=torch.bool, device=device)
+        self.wild = torch.zeros(num_envs, dtype=torch.bool, device=device)
+        self.reachable = torch.ones(num_envs, dtype=torch.bool, device=device)
+        self.mean_forces = torch.zeros(num_envs, num_links, 3, device=device)
+
+    def reset(self, env_idx: Tensor, reachable: Tensor) -> None:
+        """Start new episodes; reachable (n,) bool says whether the arm can follow the plan."""
+        for field in (self.touched, self.max_lift, self.held_steps, self.was_up, self.wild):
+            field[env_idx] = 0
+        self.mean_forces[env_idx] = 0
+        self.reachable[env_idx] = reachable
+
+    def record(self, lift: Tensor, link_forces: Tensor, speed: Tensor) -> None:
+        """Take in one control step.
+
+        Args:
+            lift: (num_envs,) [m] rise of the object.
+            link_forces: (num_envs, num_links, 3) [N] in link frames.
+            speed: (num_envs,) [m/s] of the object.
+        """
+        pressing = (link_forces.norm(dim=-1) >= CONTACT_FORCE).any(1)
+        up = (lift >= LIFT_HEIGHT) & pressing
+        self.touched |= pressing
+        self.max_lift = torch.maximum(self.max_lift, lift)
+        self.held_steps = torch.where(up, self.held_steps + 1, 0)
+        self.was_up |= up
+        self.wild |= ~(speed < WILD_SPEED)  # Also catches NaN.
+        self.mean_forces = MEMORY * self.mean_forces + (1 - MEMORY) * link_forces
+
+    @property
+    def success(self) -> Tensor:
+        """(num_envs,) bool: 0.2 m up and held by the hand alone for the last 0.5 s."""
+        return (self.held_steps >= HELD_STEPS) & ~self.wild
+
+    def failure(self, step: Tensor, lift: Tensor) -> Tensor:
+        """(num_envs,) long into `FAILURES`; 0 while nothing is lost yet.
+
+        Args:
+            step: (num_envs,) control steps taken.
+            lift: (num_envs,) [m] rise of the object now.
+        """
+        tried = step > LIFT_START
+        over = step >= MAX_EPISODE_STEPS
+        failure = torch.zeros_like(step)
+        lost = tried & (self.max_lift >= OFF_TABLE) & (lift < 0.5 * self.max_lift)
+        failure[over & (self.max_lift >= OFF_TABLE)] = FAILURES.index("slipped")
+        failure[lost] = FAILURES.index("slipped")
+        failure[(lost | over) & self.was_up] = FAILURES.index("dropped")
+        failure[over & (self.max_lift < OFF_TABLE)] = FAILURES.index("not_lifted")
+        failure[tried & ~self.touched] = FAILURES.index("no_contact")
+        failure[self.wild] = FAILURES.index("unstable")
+        failure[~self.reachable & over] = FAILURES.index("unreachable")
+        failure[self.success] = FAILURES.index("none")
+        return failure
+
+    def state(self) -> dict[str, Tensor]:
+        """Everything the episode remembers, as 2-D float tensors."""
+        return {
+            name: value.flatten(1) if value.ndim > 1 else value[:, None].float()
+            for name, value in vars(self).items()
+        }
+
+    def restore(self, state: dict[str, Tensor], env_idx: Tensor) -> None:
+        """Take back what `state` gave, for some environments."""
+        for name, field in vars(self).items():
+            field[env_idx] = state[name].view(-1, *field.shape[1:]).to(field)

@@ -1,0 +1,74 @@
+"""Where an object stands before it is grasped, turned so that the hand can span it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from maniskill_taskgrasp.assets.objects.geometry import (
+    matrix_to_quat,
+    part_corners,
+    quat_to_matrix,
+)
+from maniskill_taskgrasp.assets.objects.model import ObjectModel
+from maniskill_taskgrasp.assets.objects.presentation import Presentation, present
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Placement:
+    """An object's nominal pose in the task's world; the planner and the observation know it."""
+
+    model: ObjectModel
+    presentation: Presentation
+    turn: float
+    """[rad] yaw of the presentation: the longer horizontal side lies along the world's y, so that
+    thumb and fingers, which oppose along x, close across the shorter one."""
+    position: Array
+    """(3,) [m] object origin."""
+    quat_wxyz: Array
+    """(4,)"""
+    centre: Array
+    """(3,) [m] middle of the world-aligned box around the object."""
+    extents: Array
+    """(3,) [m] that box's size along x, y and z."""
+    fixture_pose: Array
+    """(7,) [m, wxyz] of the presentation's frame."""
+
+
+def place(model: ObjectModel, presentation: str = "auto", rest: int = 0) -> Placement:
+    """Put an object in front of the robot.
+
+    Args:
+        presentation: see `assets.objects.presentation.present`.
+        rest: which of the object's resting poses.
+
+    Raises:
+        InputError: unknown presentation, or one that cannot hold the object.
+    """
+    shown = present(model, presentation, rest)
+    rotation = quat_to_matrix(shown.quat_wxyz)
+    corners = np.concatenate([part_corners(part) for part in model.parts])
+    width = np.ptp(corners @ rotation.T, axis=0)
+    turn = np.pi / 2 if width[0] > width[1] else 0.0
+    cos, sin = np.cos(turn), np.sin(turn)
+    yaw = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    rotation = yaw @ rotation
+    position = yaw @ np.asarray(shown.position)
+    world = corners @ rotation.T + position
+    low, high = world.min(0), world.max(0)
+    # The middle of the box, not the object's origin, stands at the world's origin.
+    shift = np.array([-(low[0] + high[0]) / 2, -(low[1] + high[1]) / 2, 0.0])
+    return Placement(
+        model=model,
+        presentation=shown,
+        turn=float(turn),
+        position=position + shift,
+        quat_wxyz=np.asarray(matrix_to_quat(rotation)),
+        centre=(low + high) / 2 + shift,
+        extents=high - low,
+        fixture_pose=np.concatenate([shift, matrix_to_quat(yaw)]),
+    )

@@ -1,0 +1,103 @@
+"""What stands in the scene: ground, table, objects with their fixtures, lights and cameras."""
+
+from __future__ import annotations
+
+import numpy as np
+import sapien
+from mani_skill.envs.scene import ManiSkillScene
+from mani_skill.sensors.camera import CameraConfig
+from mani_skill.utils import sapien_utils
+from mani_skill.utils.building.ground import build_ground
+from mani_skill.utils.structs import Actor
+from mani_skill.utils.structs.pose import Pose
+
+from maniskill_taskgrasp.assets.objects.actor import add_fixture, add_object
+from maniskill_taskgrasp.tasks.placement import Placement
+
+ROBOT_POSE = sapien.Pose([-0.85, 0.0, 0.152])
+"""The arm's base in the world: the object stands 0.85 m ahead, the table top 0.152 m below (fact
+sheet, sections 1.5 and 5.1)."""
+FLOOR = 0.152 - 0.918  # [m] the pedestal's foot stands on it.
+TABLE_SIZE = (1.0, 1.4, 0.04)  # [m]
+TABLE_CENTRE_X = 0.10  # [m] leaves room for the pedestal.
+TABLE_FRICTION = 0.5  # Fact sheet, section 5.1.
+TABLE_COLOUR = (0.72, 0.56, 0.40, 1.0)
+LEG_COLOUR = (0.25, 0.25, 0.27, 1.0)
+
+
+def build_table(scene: ManiSkillScene) -> None:
+    """A plain table whose top is z = 0, on legs, above the ground."""
+    build_ground(scene, altitude=FLOOR)
+    builder = scene.create_actor_builder()
+    half = np.asarray(TABLE_SIZE) / 2
+    material = sapien.physx.PhysxMaterial(TABLE_FRICTION, TABLE_FRICTION, 0.0)
+    top = sapien.Pose([TABLE_CENTRE_X, 0.0, -half[2]])
+    builder.add_box_collision(top, half, material)
+    if scene.can_render():
+        wood = sapien.render.RenderMaterial(base_color=TABLE_COLOUR, roughness=0.7)
+        steel = sapien.render.RenderMaterial(base_color=LEG_COLOUR, roughness=0.4, metallic=0.6)
+        builder.add_box_visual(top, half, wood)
+        height = -FLOOR - TABLE_SIZE[2]
+        for x in (-0.45, 0.45):
+            for y in (-0.64, 0.64):
+                leg = sapien.Pose([TABLE_CENTRE_X + x, y, FLOOR + height / 2])
+                builder.add_box_visual(leg, [0.025, 0.025, height / 2], steel)
+    builder.initial_pose = sapien.Pose()
+    builder.build_static("table")
+
+
+def build_objects(scene: ManiSkillScene, placements: list[Placement]) -> Actor:
+    """One object and, where its presentation has one, its fixture for each environment."""
+    actors = []
+    for env, placement in enumerate(placements):
+        builder = scene.create_actor_builder()
+        builder.set_scene_idxs([env])
+        add_object(builder, placement.model, visual=scene.can_render())
+        builder.initial_pose = sapien.Pose(placement.position, placement.quat_wxyz)
+        actor = builder.build(f"object-{env}")
+        scene.remove_from_state_dict_registry(actor)
+        actors.append(actor)
+        if placement.presentation.parts:
+            _build_fixture(scene, env, placement)
+    merged = Actor.merge(actors, "object")
+    scene.add_to_state_dict_registry(merged)
+    return merged
+
+
+def _build_fixture(scene: ManiSkillScene, env: int, placement: Placement) -> None:
+    builder = scene.create_actor_builder()
+    builder.set_scene_idxs([env])
+    add_fixture(builder, placement.presentation, visual=scene.can_render())
+    builder.initial_pose = Pose.create(placement.fixture_pose)
+    builder.build_static(f"fixture-{env}")
+
+
+def render_camera() -> CameraConfig:
+    """Looks at the object and the hand from the front left, the arm behind them."""
+    pose = sapien_utils.look_at([0.75, 0.55, 0.45], [-0.08, 0.0, 0.14])
+    return CameraConfig("render_camera", pose, 640, 480, 0.9, 0.01, 100)
+
+
+def sensor_camera() -> CameraConfig:
+    """The view of visual observations."""
+    pose = sapien_utils.look_at([0.6, 0.0, 0.5], [0.0, 0.0, 0.1])
+    return CameraConfig("base_camera", pose, 128, 128, np.pi / 3, 0.01, 100)
+
+
+def add_lights(scene: ManiSkillScene, shadow: bool) -> None:
+    """Soft daylight from the front left, a weak fill from behind."""
+    scene.set_ambient_light([0.45, 0.45, 0.45])
+    scene.add_directional_light(
+        [-0.6, -0.5, -1.0], [1.1, 1.1, 1.05], shadow=shadow, shadow_scale=2, shadow_map_size=2048
+    )
+    scene.add_directional_light([0.7, 0.6, -0.8], [0.5, 0.5, 0.55])
+
+
+def set_friction(body: sapien.physx.PhysxRigidBaseComponent, coefficient: float) -> None:
+    """Give all shapes of a body one coefficient of friction, static and dynamic.
+
+    The solver averages the coefficients of the two sides, so hand and object both get it.
+    """
+    material = sapien.physx.PhysxMaterial(coefficient, coefficient, 0.0)
+    for shape in body.get_collision_shapes():
+        shape.set_physical_material(material)

@@ -1,0 +1,415 @@
+"""TaskGrasp-v0: close the hand in the topology that was asked for until the object is lifted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from mani_skill.envs.sapien_env import BaseEnv
+from mani_skill.utils.registration import register_env
+from mani_skill.utils.structs.pose import Pose
+from mani_skill.utils.structs.types import SceneConfig, SimConfig
+from torch import Tensor
+
+from maniskill_taskgrasp.agents.fidelity import ContactSurfaces, in_topology
+from maniskill_taskgrasp.agents.hand import PARTS
+from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
+from maniskill_taskgrasp.agents.sawyer_ar10.agent import SawyerAR10
+from maniskill_taskgrasp.assets.objects import library
+from maniskill_taskgrasp.errors import InputError, echo
+from maniskill_taskgrasp.tasks import rewards, scene
+from maniskill_taskgrasp.tasks.arm_ik import ArmIK
+from maniskill_taskgrasp.tasks.contacts import LinkContacts
+from maniskill_taskgrasp.tasks.geometry import quat_multiply, quat_to_matrix, yaw_quat
+from maniskill_taskgrasp.tasks.noise import draw_friction, draw_offsets, resolve_noise
+from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
+from maniskill_taskgrasp.tasks.phases import (
+    CONTROL_FREQ,
+    LIFT_START,
+    MAX_EPISODE_STEPS,
+    PHASES,
+    phase_at,
+)
+from maniskill_taskgrasp.tasks.placement import Placement, place
+from maniskill_taskgrasp.tasks.planner import PregraspPlanner
+from maniskill_taskgrasp.tasks.pregrasp import palm_path
+from maniskill_taskgrasp.tasks.sensing import HandBoxes, part_distances, part_forces
+from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
+
+SIM_FREQ = 100  # [Hz]
+DISTANCES = ("exact", "noisy", "none")
+DISTANCE_ERROR = (0.003, 0.005)  # [m] size of the error that "noisy" draws once an episode.
+OBSERVATIONS = ("full", "paper")
+SURFACE_POINTS = 128  # Points of the object's surface that distances are taken to.
+FORCE_SCALE = 10.0  # [N] divides forces in the observation; distances are in decimetres.
+
+
+def _one_of(name: str, value: str, allowed: Sequence[str]) -> str:
+    if value not in allowed:
+        raise InputError(f"{name} must be one of {', '.join(allowed)}, got {echo(value)}")
+    return value
+
+
+def _resolve_topologies(topology: str | Sequence[str], control_mode: str | None) -> list[Topology]:
+    """Topologies of the environments, which a `pd_synergy_<slug>` must not contradict."""
+    if isinstance(topology, str):
+        topology = [t.name for t in TOPOLOGIES] if topology == "all" else [topology]
+    topologies = [resolve_topology(name) for name in topology]
+    own = [t for t in TOPOLOGIES if control_mode == f"pd_synergy_{t.slug}"]
+    if own and topologies != own:
+        names = ", ".join(t.name for t in topologies)
+        raise InputError(f"control mode {control_mode!r} closes {own[0].name!r}, not {names!r}")
+    return topologies
+
+
+def _resolve_objects(objects: str | Sequence[str]) -> list[str]:
+    if isinstance(objects, str):
+        if objects in ("train", "test"):
+            return list(library.names(objects))
+        return list(library.names()) if objects == "all" else [objects]
+    if not objects:
+        raise InputError("objects must name at least one object, got an empty list")
+    return list(objects)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the hand feels at one instant."""
+
+    local_forces: Tensor
+    """(num_envs, num_links, 3) [N] force of the object on each hand link, link frame."""
+    forces: Tensor
+    """(num_envs, num_parts) [N]"""
+    distances: Tensor
+    """(num_envs, num_parts) [m]"""
+
+
+@register_env("TaskGrasp-v0", max_episode_steps=MAX_EPISODE_STEPS)
+class TaskGraspEnv(BaseEnv):
+    """
+    **Task Description:**
+    A Sawyer arm with an AR10 hand is told which grasp topology to use. The arm follows a planned
+    path (hover, descend, close, lift, hold); the policy closes the hand along the topology's joint
+    synergies.
+
+    **Randomizations:**
+    - the object's place, yaw, friction and mass differ from what the planner knows (`noise`)
+    - objects and topologies differ between environments (`objects`, `topology`)
+
+    **Success Conditions:**
+    - the object is at least 0.20 m above its start and has been held by the hand alone for 0.5 s
+    """
+
+    SUPPORTED_ROBOTS = ("sawyer_ar10",)
+    SUPPORTED_REWARD_MODES = ("normalized_dense", "dense", "sparse", "none", "paper")
+    agent: SawyerAR10
+
+    def __init__(
+        self,
+        *args: Any,
+        topology: str | list[str] = "precision pad abd 2-3",
+        objects: str | list[str] = "train",
+        presentation: str = "auto",
+        noise: str = "paper",
+        distance: str = "exact",
+        obs: str = "full",
+        robot_uids: str = "sawyer_ar10",
+        control_mode: str | None = "pd_synergy",
+        **kwargs: Any,
+    ) -> None:
+        self.topologies = _resolve_topologies(topology, control_mode)
+        self.object_names = _resolve_objects(objects)
+        self._presentation = presentation
+        self._noise = resolve_noise(noise)
+        self._distance = _one_of("distance", distance, DISTANCES)
+        self._obs = _one_of("obs", obs, OBSERVATIONS)
+        self._weights = rewards.RewardWeights()
+        super().__init__(*args, robot_uids=robot_uids, control_mode=control_mode, **kwargs)
+
+    @property
+    def _default_sim_config(self) -> SimConfig:
+        # Small contact offset: half the cost and no trial flipped (facts: simulation, 3a).
+        return SimConfig(
+            sim_freq=SIM_FREQ,
+            control_freq=CONTROL_FREQ,
+            scene_config=SceneConfig(
+                contact_offset=0.005,
+                solver_position_iterations=12,
+                enable_enhanced_determinism=True,
+            ),
+        )
+
+    @property
+    def _default_sensor_configs(self) -> list[Any]:
+        return [scene.sensor_camera()]
+
+    @property
+    def _default_human_render_camera_configs(self) -> list[Any]:
+        return [scene.render_camera()]
+
+    # Scene
+
+    def _load_agent(self, options: dict) -> None:  # type: ignore[override]
+        super()._load_agent(options, scene.ROBOT_POSE, build_separate=False)
+
+    def _load_lighting(self, options: dict) -> None:
+        scene.add_lights(self.scene, self.enable_shadow)
+
+    def _load_scene(self, options: dict) -> None:
+        scene.build_table(self.scene)
+        self.placements = [self._placement(env) for env in range(self.num_envs)]
+        self.obj = scene.build_objects(self.scene, self.placements)
+        self._randomize_physics()
+        self._prepare_planning()
+
+    def _placement(self, env: int) -> Placement:
+        draw = self._batched_episode_rng[env].randint(2**31)
+        # One environment draws an object; many share the list out between them.
+        index = draw % len(self.object_names) if self.num_envs == 1 else env
+        name = self.object_names[index % len(self.object_names)]
+        return place(library.load(name), self._presentation)
+
+    def _randomize_physics(self) -> None:
+        """Friction and mass of each environment's object, set before the first physics step."""
+        for env, placement in enumerate(self.placements):
+            rng = self._batched_episode_rng[env]
+            friction = draw_friction(self._noise, placement.model.friction, rng)
+            body = self.obj._bodies[env]
+            factor = rng.uniform(*self._noise.mass)
+            body.set_mass(body.mass * factor)
+            body.set_inertia(body.inertia * factor)
+            scene.set_friction(body, friction)
+            for link in self.agent.robot.links:
+                scene.set_friction(link._bodies[env], friction)
+
+    # Planning
+
+    def _prepare_planning(self) -> None:
+        agent, device = self.agent, self.device
+        kinematics = ArticulationKinematics.of(agent.robot)
+        self._kinematics = kinematics
+        self._hand_links = [link for links in agent.part_links.values() for link in links]
+        link_names = [link.name for link in self._hand_links]
+        self._boxes = HandBoxes.of(agent.part_primitives, link_names, device)
+        self._surfaces = ContactSurfaces(agent.hand, link_names, device)
+        self._planner = PregraspPlanner(
+            agent.hand, agent.part_primitives, kinematics, agent.actuator_indices
+        )
+        limits = agent.robot.get_qlimits()[0, agent.arm_indices]
+        root = Pose.create(scene.ROBOT_POSE, device=device).raw_pose[0]
+        self._ik = ArmIK(kinematics, agent.arm_indices, agent.hand.palm_frame, limits, root)
+        self._plans: dict[tuple[str, int], tuple[Tensor, Tensor]] = {}
+        n = self.num_envs
+        tensor = lambda rows: torch.tensor(np.stack(rows), dtype=torch.float32, device=device)  # noqa: E731
+        self._points = tensor([p.model.surface_points(SURFACE_POINTS) for p in self.placements])
+        self._nominal_pose = tensor(
+            [np.concatenate([p.position, p.quat_wxyz]) for p in self.placements]
+        )
+        self._centre = tensor([p.centre for p in self.placements])
+        self._extents = tensor([p.extents for p in self.placements])
+        self.topology_index = torch.zeros(n, dtype=torch.long, device=device)
+        self.pregrasp = torch.zeros(n, 6, device=device)
+        self._start_height = torch.zeros(n, device=device)
+        self._distance_error = torch.zeros(n, len(PARTS), device=device)
+        self._last_action = torch.zeros(n, self.agent.single_action_space.shape[0], device=device)
+        self.outcome = Outcome(n, len(link_names), device)
+        self._named_parts = torch.tensor(
+            [[part in t.parts for part in PARTS] for t in TOPOLOGIES], device=device
+        )
+        fingers = [part not in ("palm", "thumb") for part in PARTS]
+        self._finger_parts = torch.tensor(fingers, device=device)
+        self._contacts: LinkContacts | None = None
+
+    def _initialize_episode(self, env_idx: Tensor, options: dict) -> None:
+        topologies = self._draw_topologies(env_idx, options)
+        self.topology_index[env_idx] = torch.tensor(
+            [t.index for t in topologies], device=self.device
+        )
+        path, reachable = self._plan(env_idx, topologies, options)
+        self._place_robot(env_idx, topologies, path)
+        self._place_objects(env_idx)
+        self._last_action[env_idx] = 0.0
+        self.outcome.reset(env_idx, reachable)
+        self._reading = None
+
+    def _draw_topologies(self, env_idx: Tensor, options: dict) -> list[Topology]:
+        if "topology" in options:
+            return [resolve_topology(options["topology"])] * len(env_idx)
+        return [self.topologies[int(env) % len(self.topologies)] for env in env_idx]
+
+    def _plan(
+        self, env_idx: Tensor, topologies: list[Topology], options: dict
+    ) -> tuple[Tensor, Tensor]:
+        """Joint paths (n, steps, 7) and reachability (n,); plans are kept, noise comes later."""
+        if "pregrasp" in options:
+            pregrasps = torch.as_tensor(options["pregrasp"], device=self.device)
+            self.pregrasp[env_idx] = pregrasps
+            return self._ik.path(palm_path(pregrasps, self._centre[env_idx]))
+        missing = [
+            (int(env), t)
+            for env, t in zip(env_idx, topologies, strict=True)
+            if (t.slug, int(env)) not in self._plans
+        ]
+        if missing:
+            wanted = torch.stack(
+                [self._planner.plan(t.slug, self.placements[env]) for env, t in missing]
+            ).to(self.device)
+            rows = torch.tensor([env for env, _ in missing], device=self.device)
+            paths, reachable = self._ik.path(palm_path(wanted, self._centre[rows]))
+            for i, (env, t) in enumerate(missing):
+                self._plans[t.slug, env] = (wanted[i], paths[i], reachable[i])
+        plans = [self._plans[t.slug, int(env)] for env, t in zip(env_idx, topologies, strict=True)]
+        self.pregrasp[env_idx] = torch.stack([p for p, _, _ in plans])
+        return torch.stack([p for _, p, _ in plans]), torch.stack([r for _, _, r in plans])
+
+    def _place_robot(self, env_idx: Tensor, topologies: list[Topology], path: Tensor) -> None:
+        postures = [self.agent.hand.postures[t.slug] for t in topologies]
+        preshape = torch.tensor([p.preshape for p in postures], device=self.device)
+        closing = torch.tensor([p.closing for p in postures], device=self.device)
+        qpos = self.agent.full_qpos(path[:, 0].cpu().numpy(), preshape.cpu().numpy())
+        self.agent.reset(torch.from_numpy(qpos).to(self.device))
+        self.agent.set_plan(env_idx, path, preshape, closing, LIFT_START)
+
+    def _place_objects(self, env_idx: Tensor) -> None:
+        rng = self._batched_episode_rng[env_idx]
+        draws = draw_offsets(self._noise, rng.uniform(-1, 1, size=3))
+        offsets = torch.tensor(draws, dtype=torch.float32, device=self.device)
+        pose = self._nominal_pose[env_idx].clone()
+        turn = yaw_quat(offsets[:, 2])
+        pose[:, :3] = (quat_to_matrix(turn) @ pose[:, :3, None])[..., 0]
+        pose[:, :2] += offsets[:, :2]
+        pose[:, 3:] = quat_multiply(turn, pose[:, 3:])
+        self.obj.set_pose(Pose.create(pose))
+        self._start_height[env_idx] = pose[:, 2]
+        errors = rng.uniform(-1, 1, size=2 * len(PARTS)).reshape(-1, 2, len(PARTS))
+        low, high = DISTANCE_ERROR
+        size = low + (high - low) * np.abs(errors[:, 0])
+        self._distance_error[env_idx] = torch.tensor(
+            np.sign(errors[:, 1]) * size, dtype=torch.float32, device=self.device
+        )
+
+    # Sensing
+
+    def _step_action(self, action: Any) -> Any:
+        action = super()._step_action(action)
+        if action is not None:
+            self._last_action = action.reshape(self.num_envs, -1).clone()
+        self._reading = self._read()
+        self.outcome.record(
+            self._lift(), self._reading.local_forces, self.obj.linear_velocity.norm(dim=1)
+        )
+        return action
+
+    def _read(self) -> Reading:
+        """Forces and distances now; forces are zero where no physics step was taken yet."""
+        if self._contacts is None:
+            self._contacts = LinkContacts(self.scene, self._hand_links, self.obj)
+        link_poses = torch.stack([link.pose.raw_pose for link in self._hand_links], 1)
+        forces = self._contacts.forces()
+        forces = torch.where((self._elapsed_steps > 0)[:, None, None], forces, 0.0)
+        rotation = quat_to_matrix(link_poses[..., 3:])
+        return Reading(
+            local_forces=(rotation.transpose(-1, -2) @ forces[..., None])[..., 0],
+            forces=part_forces(forces, self._surfaces.part_of_link, len(PARTS)),
+            distances=part_distances(link_poses, self._boxes, self._points, self.obj.pose.raw_pose),
+        )
+
+    @property
+    def reading(self) -> Reading:
+        """What the hand feels now."""
+        if self._reading is None:
+            self._reading = self._read()
+        return self._reading
+
+    def _lift(self) -> Tensor:
+        return self.obj.pose.p[:, 2] - self._start_height
+
+    def evaluate(self) -> dict[str, Tensor]:
+        reading, lift = self.reading, self._lift()
+        failure = self.outcome.failure(self._elapsed_steps.long(), lift)
+        return {
+            "success": self.outcome.success,
+            "fail": failure > 0,
+            "lift": lift,
+            "part_forces": reading.forces,
+            "contact_links": reading.local_forces.norm(dim=-1) >= rewards.CONTACT_FORCE,
+            "failure": failure,
+            "fidelity": self._fidelity(),
+        }
+
+    def _fidelity(self) -> Tensor:
+        """(num_envs,) bool: contacts of the last half second are those of the topology's name."""
+        qpos = self.agent.robot.get_qpos()[:, self.agent.actuator_indices]
+        shares = self._surfaces.shares(self.outcome.mean_forces)
+        pip = qpos[:, self.agent.finger_pip]
+        return in_topology(shares, self.topology_index, qpos[:, self.agent.thumb_rotation], pip)
+
+    # Observation
+
+    def _get_obs_agent(self) -> dict[str, Tensor]:
+        if self._obs == "paper":
+            return {}
+        qpos = self.agent.robot.get_qpos()[:, self.agent.actuator_indices]
+        return {"qpos": qpos, "last_action": self._last_action, **self.agent.controller.get_state()}
+
+    def _get_obs_extra(self, info: dict) -> dict[str, Tensor]:
+        forces = self.reading.forces
+        sensed = {"forces": forces, "distances": self._sensed_distances()}
+        if self._obs == "paper":
+            return sensed
+        step = self._elapsed_steps
+        eye = torch.eye(len(PHASES), device=self.device)
+        topologies = torch.eye(len(TOPOLOGIES), device=self.device)
+        return {
+            **sensed,
+            "phase": eye[phase_at(step).clamp(max=len(PHASES) - 1)],
+            "progress": (step / MAX_EPISODE_STEPS)[:, None],
+            "topology": topologies[self.topology_index],
+            "extents": self._extents,
+            "pregrasp": self.pregrasp,
+        }
+
+    def _sensed_distances(self) -> Tensor:
+        """(num_envs, num_parts) [m] as the chosen track knows them."""
+        distances = self.reading.distances
+        if self._distance == "none":
+            return torch.zeros_like(distances)
+        if self._distance == "noisy":
+            return (distances + self._distance_error).clamp(min=0)
+        return distances
+
+    # Reward
+
+    def get_reward(self, obs: Any, action: Tensor, info: dict) -> Tensor:
+        if self.reward_mode == "paper":
+            forces = self.reading.local_forces.norm(dim=-1)
+            count = info["contact_links"].sum(1)
+            return rewards.paper_reward(count, forces.sum(1), info["success"])
+        return super().get_reward(obs=obs, action=action, info=info)
+
+    def reward_terms(self, info: dict[str, Tensor]) -> dict[str, Tensor]:
+        """Unweighted terms, each (num_envs,) in [0, 1]."""
+        named = self._named_parts[self.topology_index]
+        opposing = named & ~self._finger_parts
+        forces, distances = info["part_forces"], self.reading.distances
+        lift = rewards.lift_term(info["lift"], LIFT_HEIGHT)
+        return {
+            "reach": rewards.reach_term(distances, named),
+            "contact": rewards.contact_term(forces, named),
+            "balance": rewards.balance_term(forces, opposing, named & self._finger_parts),
+            "form": info["fidelity"] * lift,
+            "lift": lift,
+            "success": info["success"].float(),
+        }
+
+    def compute_dense_reward(self, obs: Any, action: Tensor, info: dict) -> Tensor:
+        terms = self.reward_terms(info)
+        info.update({f"reward/{name}": value for name, value in terms.items()})
+        weights = vars(self._weights)
+        return torch.stack([weights[name] * value for name, value in terms.items()]).sum(0)
+
+    def compute_normalized_dense_reward(self, obs: Any, action: Tensor, info: dict) -> Tensor:
+        return self.compute_dense_reward(obs, action, info) / self._weights.total
