@@ -22,7 +22,9 @@ from maniskill_taskgrasp.agents.sawyer_ar10.model import (
     Robot,
     Vec3,
 )
+from maniskill_taskgrasp.agents.sawyer_ar10.visuals import link_meshes, mesh_files
 
+MESHES = "meshes"
 FRAME_INERTIA = Inertia(mass=1e-5, com=(0.0, 0.0, 0.0), xx=1e-9, yy=1e-9, zz=1e-9)
 """What a mere frame weighs: without an entry the physics engine would give it one kilogram."""
 
@@ -104,7 +106,11 @@ def build(folder: Path) -> None:
     """Write both URDF files and the visual meshes into `folder`, which is made if absent."""
     folder.mkdir(parents=True, exist_ok=True)
     robot = SAWYER_AR10
-    _write(folder / f"{robot.name}.urdf", urdf(robot, {}).encode())
+    (folder / MESHES).mkdir(exist_ok=True)
+    for name, content in mesh_files().items():
+        _write(folder / MESHES / f"{name}.glb", content)
+    meshes = {link: f"{MESHES}/{mesh}.glb" for link, mesh in link_meshes().items()}
+    _write(folder / f"{robot.name}.urdf", urdf(robot, meshes).encode())
     _write(folder / f"{robot.name}_collision.urdf", urdf(robot, {}).encode())
 
 
