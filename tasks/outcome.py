@@ -5,7 +5,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from maniskill_taskgrasp.tasks.phases import HELD_STEPS, LIFT_START, MAX_EPISODE_STEPS
+from maniskill_taskgrasp.episode import HELD_STEPS, LIFT_START, MAX_EPISODE_STEPS
 from maniskill_taskgrasp.tasks.rewards import CONTACT_FORCE
 
 FAILURES = (

@@ -9,16 +9,18 @@ from typing import Any
 import numpy as np
 import torch
 from mani_skill.envs.sapien_env import BaseEnv
-from mani_skill.utils.registration import register_env
+from mani_skill.utils.registration import REGISTERED_ENVS, register
 from mani_skill.utils.structs.pose import Pose
 from mani_skill.utils.structs.types import SceneConfig, SimConfig
 from torch import Tensor
 
+from maniskill_taskgrasp import ENV_ID
 from maniskill_taskgrasp.agents.fidelity import ContactSurfaces, in_topology
 from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
 from maniskill_taskgrasp.agents.sawyer_ar10.agent import SawyerAR10
 from maniskill_taskgrasp.assets.objects import library
+from maniskill_taskgrasp.episode import CONTROL_FREQ, LIFT_START, MAX_EPISODE_STEPS, PHASES
 from maniskill_taskgrasp.errors import InputError, echo
 from maniskill_taskgrasp.tasks import rewards, scene
 from maniskill_taskgrasp.tasks.arm_ik import ArmIK
@@ -26,13 +28,7 @@ from maniskill_taskgrasp.tasks.contacts import LinkContacts
 from maniskill_taskgrasp.tasks.geometry import quat_multiply, quat_to_matrix, yaw_quat
 from maniskill_taskgrasp.tasks.noise import draw_friction, draw_offsets, resolve_noise
 from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
-from maniskill_taskgrasp.tasks.phases import (
-    CONTROL_FREQ,
-    LIFT_START,
-    MAX_EPISODE_STEPS,
-    PHASES,
-    phase_at,
-)
+from maniskill_taskgrasp.tasks.phases import phase_at
 from maniskill_taskgrasp.tasks.placement import Placement, place
 from maniskill_taskgrasp.tasks.planner import PregraspPlanner
 from maniskill_taskgrasp.tasks.pregrasp import palm_path
@@ -87,7 +83,6 @@ class Reading:
     """(num_envs, num_parts) [m]"""
 
 
-@register_env("TaskGrasp-v0", max_episode_steps=MAX_EPISODE_STEPS)
 class TaskGraspEnv(BaseEnv):
     """
     **Task Description:**
@@ -413,3 +408,9 @@ class TaskGraspEnv(BaseEnv):
 
     def compute_normalized_dense_reward(self, obs: Any, action: Tensor, info: dict) -> Tensor:
         return self.compute_dense_reward(obs, action, info) / self._weights.total
+
+
+if ENV_ID in REGISTERED_ENVS:
+    raise RuntimeError(f"an environment named {ENV_ID!r} is registered already; names are unique")
+# gymnasium knows the name since `import maniskill_taskgrasp`; this is ManiSkill's own registry.
+register(ENV_ID, TaskGraspEnv, max_episode_steps=MAX_EPISODE_STEPS)
