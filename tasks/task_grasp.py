@@ -25,6 +25,7 @@ from maniskill_taskgrasp.errors import InputError, echo
 from maniskill_taskgrasp.tasks import rewards, scene
 from maniskill_taskgrasp.tasks.arm_ik import ArmIK
 from maniskill_taskgrasp.tasks.contacts import LinkContacts
+from maniskill_taskgrasp.tasks.cpu_batch import CpuBatchMixin
 from maniskill_taskgrasp.tasks.geometry import quat_multiply, quat_to_matrix, yaw_quat
 from maniskill_taskgrasp.tasks.noise import draw_friction, draw_offsets, resolve_noise
 from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
@@ -83,7 +84,7 @@ class Reading:
     """(num_envs, num_parts) [m]"""
 
 
-class TaskGraspEnv(BaseEnv):
+class TaskGraspEnv(CpuBatchMixin, BaseEnv):
     """
     **Task Description:**
     A Sawyer arm with an AR10 hand is told which grasp topology to use. The arm follows a planned

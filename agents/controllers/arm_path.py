@@ -20,8 +20,10 @@ class ArmPathController(BaseController):
 
     def _initialize_joints(self) -> None:
         super()._initialize_joints()
-        self.path = self.qpos[:, None].clone()
-        self.step = torch.zeros(self.scene.num_envs, dtype=torch.long, device=self.device)
+        num_envs = self.scene.num_envs
+        self.path = torch.zeros(num_envs, 1, len(self.joints), device=self.device)
+        self.step = torch.zeros(num_envs, dtype=torch.long, device=self.device)
+        self._planned = torch.zeros(num_envs, dtype=torch.bool, device=self.device)
 
     def _initialize_action_space(self) -> None:
         self.single_action_space = spaces.Box(np.empty(0), np.empty(0), dtype=np.float32)
@@ -31,6 +33,13 @@ class ArmPathController(BaseController):
             joint.set_drive_properties(
                 self.config.stiffness, self.config.damping, force_limit=limit
             )
+
+    def reset(self) -> None:
+        """Environments for which no path was laid down since their last reset hold still."""
+        still = self.scene._reset_mask & ~self._planned
+        self.path[still] = self.qpos[still][:, None]
+        self.step[still] = 0
+        self._planned &= ~self.scene._reset_mask
 
     def set_path(self, env_idx: Tensor, path: Tensor) -> None:
         """Lay down a new path and start at its first waypoint.
@@ -43,6 +52,7 @@ class ArmPathController(BaseController):
             self.path = self.path[:, -1:].repeat(1, path.shape[1], 1)
         self.path[env_idx] = path.to(self.path)
         self.step[env_idx] = 0
+        self._planned[env_idx] = True
 
     def waypoint(self) -> Tensor:
         """(num_envs, num_joints) [rad] where the arm should be now."""

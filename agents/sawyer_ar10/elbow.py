@@ -94,7 +94,8 @@ class Elbow:
         soup += [fan(before[0]), fan(after[-1, ::-1])]
         if self.cut is None:
             return np.concatenate(soup), np.empty((0, 3, 3))
-        open_rows = np.flatnonzero(last > first)
+        inner_rows = np.flatnonzero(last > first)  # One more on either side closes the points.
+        open_rows = np.arange(inner_rows[0] - 1, inner_rows[-1] + 2)
         loop = np.concatenate([after[0, open_rows], before[-1, open_rows[::-1]]])
         soup.append(fan(loop))
         return np.concatenate(soup), _cap(loop)

@@ -62,19 +62,23 @@ def _knob(xyz: tuple[float, float, float]) -> Look:
 def pedestal() -> Look:
     """Round column on a cross-shaped wheeled base, the controller's tall box behind it."""
     column = revolve([(126, -640), (126, -628), (105, -612), (105, -30), (112, -26), (112, -10.5)])
-    deck = plate([(70, -110, 60), (70, 110, 60), (-400, -150, 40), (-400, 150, 40)], 36, bevel=6)
-    look: Look = [("iron", column), ("iron", place(deck, (0, 0, -655)))]
+    deck = plate([(70, -110, 60), (70, 110, 60), (-400, -150, 40), (-400, 150, 40)], 40, bevel=6)
+    look: Look = [
+        ("iron", column),
+        ("iron", place(deck, (0, 0, -655))),
+        ("iron", place(rounded_box((300, 220, 120), 20), (-140, 0, -725))),
+    ]
     for x, y in ((215, 295), (215, -297), (-455, 295), (-455, -297)):
         beam = plate([(-125 + x * 0.1, y * 0.15, 60), (x, y, 46)], 52, bevel=8)
         caster = cylinder(43, 34, 5, 40)
         hub = cylinder(18, 40, 2)
-        leg = revolve([(30, -800), (30, -765), (20, -755), (20, -690)], 32)
+        leg = revolve([(30, -832), (30, -812), (22, -806), (22, -780)], 32)
         look += [
-            ("iron", place(beam, (0, 0, -690))),
+            ("iron", place(beam, (0, 0, -770))),
             ("iron", place(leg, (x, y, 0))),
             ("rubber", place(caster, (x, y, -871), TO_LEFT)),
             ("grey", place(hub, (x, y, -871), TO_LEFT)),
-            ("iron", place(rounded_box((60, 52, 40), 8), (x, y, -812))),
+            ("iron", place(rounded_box((60, 56, 36), 8), (x, y, -842))),
         ]
     look += _controller()
     return look
@@ -113,7 +117,7 @@ def shoulder() -> Look:
         [(66, 8), (71, 13), (70, 120), (68, 230), (66, 270), (61, 289), (52, 301), (46, 304)], 64
     )
     bend = Elbow(
-        length_in=81, length_out=55.5, radius_in=60, radius_bend=68, radius_out=68, bend=22, cut=27
+        length_in=81, length_out=55.5, radius_in=60, radius_bend=68, radius_out=68, bend=9, cut=25
     )
     return [
         _ring(72, 0),
@@ -125,14 +129,15 @@ def shoulder() -> Look:
 
 def head() -> Look:
     """Grey post, wide black screen in a thin red frame, camera pod on top, and the eyes."""
-    post = revolve([(41, -7), (41, 4), (36, 12), (31, 40), (31, 175), (25, 186)], 48)
-    frame = [(5.0, s * 114.0, 14.0) for s in (-1, 1)]
+    post = revolve([(41, -7), (41, 4), (37, 11), (30, 20), (27, 32)], 48)
+    spine = loft([(20, 16, 30, 8), (60, 16, 44, 10), (170, 16, 44, 10), (190, 14, 36, 9)])
     back = plate([(y, z, 14) for y in (-114, 114) for z in (41, 183)], 24, "x", 4)
     rim = plate([(y, z, 13) for y in (-115, 115) for z in (40, 184)], 7, "x", 1.5)
     glass = plate([(y, z, 11) for y in (-112, 112) for z in (43, 181)], 8, "x", 1.5)
     pod = loft([(0, 22, 34, 12), (30, 22, 34, 12), (36, 19, 31, 10), (38, 15, 27, 9)])
     look: Look = [
         ("grey", post),
+        ("grey", place(spine, (-12, 0, 0))),
         ("dark", place(back, (7, 0, 0))),
         ("red", place(rim, (21, 0, 0))),
         ("screen", place(glass, (23.5, 0, 0))),
@@ -141,12 +146,11 @@ def head() -> Look:
         ("black", place(cylinder(11, 6, 1.5, 32), (27, 0, 216), TO_X)),
         ("lens", place(cylinder(5, 8, 1.5, 24), (27.5, 0, 216), TO_X)),
     ]
-    del frame
     for side in (-1, 1):
         white = plate([(side * 48, 104, 27), (side * 48, 118, 27)], 1.2, "x", 0.3)
-        pupil = plate([(side * 44, 108, 15), (side * 44, 112, 15)], 1.0, "x", 0.3)
-        spark = plate([(side * 44 + 6, 117, 4)], 0.8, "x", 0.2)
-        brow = plate([(side * 30, 158, 3.5), (side * 66, 163, 3.5)], 1.2, "x", 0.3)
+        pupil = plate([(side * 45, 103, 15), (side * 45, 107, 15)], 1.0, "x", 0.3)
+        spark = plate([(side * 45 + 5, 112, 4)], 0.8, "x", 0.2)
+        brow = plate([(side * 32, 160, 3.2), (side * 64, 157, 3.2)], 1.2, "x", 0.3)
         look += [
             ("eye", place(white, (27.8, 0, 0))),
             ("screen", place(pupil, (28.6, 0, 0))),
@@ -159,8 +163,8 @@ def head() -> Look:
 def upper_shoulder() -> Look:
     """l1: from the shoulder sideways, then forward."""
     bend = Elbow(
-        length_in=134, length_out=139.5, radius_in=68, radius_bend=62, radius_out=53.5, bend=20,
-        cut=24,
+        length_in=134, length_out=139.5, radius_in=68, radius_bend=62, radius_out=53.5, bend=8,
+        cut=22,
     )  # fmt: skip
     return [_ring(68, 1), *_tube(bend, (0, 0, 142.5), (0, 0, pi))]
 
@@ -176,8 +180,7 @@ def upper_arm() -> Look:
 def elbow() -> Look:
     """l3: sideways, then forward."""
     bend = Elbow(
-        length_in=118, length_out=124.5, radius_in=53.5, radius_bend=50, radius_out=45, bend=16,
-        cut=19,
+        length_in=118, length_out=124.5, radius_in=53.5, radius_bend=50, radius_out=45, bend=7, fillet=16, cut=18,
     )  # fmt: skip
     return [_ring(53.5, -14), *_tube(bend, (0, 0, -126.5), (pi, 0, 0))]
 
@@ -197,7 +200,14 @@ def forearm() -> Look:
 def wrist() -> Look:
     """l5: sideways, then towards the hand."""
     bend = Elbow(
-        length_in=97, length_out=73, radius_in=47.5, radius_bend=46, radius_out=42, bend=14, cut=18
+        length_in=97,
+        length_out=73,
+        radius_in=47.5,
+        radius_bend=46,
+        radius_out=42,
+        bend=6,
+        fillet=12,
+        cut=16,
     )
     return [_ring(47.5, 1), *_tube(bend, (0, 0, 105), (0, 0, pi))]
 

@@ -23,6 +23,12 @@ class Material:
     roughness: float = 0.6
     metallic: float = 0.0
 
+    def linear_rgba(self) -> list[float]:
+        """The colour as GLB files state it: light intensities, and full opacity."""
+        rgb = np.array(self.rgb)
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        return [*np.round(linear, 4).tolist(), 1.0]
+
 
 MATERIALS = {
     # The CAD's pure red, toned down to the product's.
@@ -82,7 +88,7 @@ def _glb(look: Iterable[tuple[str, Soup]]) -> bytes:
             visual=trimesh.visual.TextureVisuals(
                 material=trimesh.visual.material.PBRMaterial(
                     name=name,
-                    baseColorFactor=[*material.rgb, 1.0],
+                    baseColorFactor=material.linear_rgba(),
                     metallicFactor=material.metallic,
                     roughnessFactor=material.roughness,
                 )

@@ -1,0 +1,29 @@
+"""The policy that needs no learning: wait for the palm to arrive, then close all the way."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from maniskill_taskgrasp.agents.controllers.palm_motion import PalmResidualController
+from maniskill_taskgrasp.episode import CLOSE_START
+
+
+class ConstantClosing:
+    """Activation 0 until the closing phase, then `activation`; the palm stays on its path."""
+
+    def __init__(self, env: Any, activation: float = 1.0) -> None:
+        self._env = env.unwrapped
+        self._activation = activation
+        arm = self._env.agent.controller.controllers["arm"]
+        self._num_palm = 4 if isinstance(arm, PalmResidualController) else 0
+
+    def __call__(self, obs: Tensor) -> Tensor:
+        """(num_envs, obs_dim) -> (num_envs, num_actions); only the clock is looked at."""
+        env = self._env
+        closing = env.elapsed_steps >= CLOSE_START
+        action = torch.zeros(env.num_envs, env.single_action_space.shape[0], device=env.device)
+        action[:, self._num_palm :] = self._activation * closing[:, None]
+        return action

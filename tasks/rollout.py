@@ -1,0 +1,118 @@
+"""Episodes of one object in one topology: what happened, and a film of the first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import torch
+from torch import Tensor
+
+from maniskill_taskgrasp.episode import CONTROL_FREQ
+from maniskill_taskgrasp.tasks.closing import ConstantClosing
+from maniskill_taskgrasp.tasks.outcome import FAILURES
+from maniskill_taskgrasp.tasks.rendering import rendering_available
+from maniskill_taskgrasp.topology import Topology
+
+
+@dataclass(frozen=True)
+class Rollout:
+    """Results of some episodes; lists have one entry an episode."""
+
+    presentation: str
+    lift_m: list[float]
+    failure: list[str]
+    fidelity: list[bool]
+    video: str | None
+    notes: list[str]
+
+
+def roll_out(
+    obj: str,
+    topology: Topology,
+    *,
+    make_policy: Callable[[Any], Callable[[Tensor], Tensor]] = ConstantClosing,
+    episodes: int = 1,
+    seed: int = 0,
+    noise: str = "paper",
+    presentation: str = "auto",
+    video: Path | None = None,
+    env_kwargs: dict[str, Any] | None = None,
+) -> Rollout:
+    """Run episodes one after the other.
+
+    Args:
+        obj: library name or mesh file.
+        topology: how to grasp it.
+        make_policy: environment -> (observation -> action).
+        video: mp4 to write of the first episode.
+        env_kwargs: further arguments of the environment, such as the policy's control mode.
+
+    Raises:
+        InputError: unknown object, noise or presentation.
+    """
+    notes = []
+    if video is not None and not rendering_available():
+        notes.append("no video: no Vulkan device was found (see README, Rendering)")
+        video = None
+    env = gym.make(
+        "TaskGrasp-v0",
+        objects=[obj],
+        topology=topology.name,
+        noise=noise,
+        presentation=presentation,
+        render_mode="rgb_array" if video is not None else None,
+        **(env_kwargs or {}),
+    )
+    try:
+        policy = make_policy(env)
+        placement = env.unwrapped.placements[0]
+        lifts, failures, forms = [], [], []
+        for episode in range(episodes):
+            film = video if episode == 0 else None
+            lift, failure, form = _episode(env, policy, seed + episode, film)
+            lifts.append(lift)
+            failures.append(failure)
+            forms.append(form)
+    finally:
+        env.close()
+    return Rollout(
+        presentation=f"{placement.presentation.kind}: {placement.presentation.reason}",
+        lift_m=lifts,
+        failure=failures,
+        fidelity=forms,
+        video=None if video is None else str(video),
+        notes=notes,
+    )
+
+
+def _episode(
+    env: gym.Env, policy: Callable[[Tensor], Tensor], seed: int, video: Path | None
+) -> tuple[float, str, bool]:
+    """One episode to its end, and on camera to the end of the clock."""
+    frames: list[np.ndarray] = []
+    obs, info = env.reset(seed=seed, options={"reconfigure": True})
+    over = False
+    while not over:
+        obs, _, terminated, truncated, info = env.step(policy(obs))
+        if video is not None:
+            frames.append(env.render()[0].cpu().numpy())  # type: ignore[union-attr, index]
+        over = bool(torch.logical_or(terminated, truncated))
+    if video is not None:
+        write_video(video, frames)
+    lift = float(env.unwrapped.outcome.max_lift[0])  # type: ignore[attr-defined]
+    return round(lift, 4), FAILURES[int(info["failure"][0])], bool(info["fidelity"][0])
+
+
+def write_video(path: Path, frames: list[np.ndarray]) -> None:
+    """Write frames (h, w, 3) uint8 as an mp4 that plays in real time, whole or not at all."""
+    import imageio
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(f".{path.name}.partial.mp4")
+    imageio.mimwrite(partial, frames, fps=CONTROL_FREQ, quality=8, macro_block_size=8)
+    partial.replace(path)
