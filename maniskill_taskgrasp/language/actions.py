@@ -1,0 +1,134 @@
+"""Which of the 74 actions a clause means: phrases of the lexicon weighed by sentence meaning."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import as_file, files
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from maniskill_taskgrasp.knowledge import load_knowledge
+from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
+from maniskill_taskgrasp.language.lexicon import load_lexicon
+
+if TYPE_CHECKING:
+    from maniskill_taskgrasp.language.clauses import Clause
+    from maniskill_taskgrasp.language.lexicon import Phrase
+
+NO_ACTION = "no action of the table"
+"""The head's class for everything that is none of the 74 actions."""
+PHRASE_BONUS = 6.0  # Log-odds that the most specific matching phrase adds to its action.
+RANK_DISCOUNT = 1.5  # Taken off that bonus for the last phrase of an action's list.
+VAGUE_BONUS = 2.0  # Log-odds of a phrase less specific than the best.
+
+
+@dataclass(frozen=True)
+class Head:
+    """Softmax regression on sentence vectors, and the vectors of the object names."""
+
+    weights: np.ndarray
+    """(classes, d)."""
+    bias: np.ndarray
+    """(classes,)."""
+    classes: tuple[str, ...]
+    names: tuple[str, ...]
+    """Names and synonyms of objects."""
+    name_vectors: np.ndarray
+    """(names, d), unit length."""
+
+
+@dataclass(frozen=True)
+class ActionScores:
+    """Probabilities of all actions for a clause."""
+
+    ranked: tuple[tuple[str, float], ...]
+    """(action, probability), best first."""
+    no_action: float
+    """Probability that the words mean none of them."""
+    known_verb: bool
+    """The lexicon has a phrase for these words."""
+
+
+@cache
+def load_head() -> Head:
+    """The trained head (`train/language.py`)."""
+    with as_file(files("maniskill_taskgrasp.assets") / "checkpoints" / "language.npz") as path:
+        data = np.load(path)
+        return Head(
+            weights=data["weights"].astype(np.float32),
+            bias=data["bias"],
+            classes=tuple(data["classes"].tolist()),
+            names=tuple(data["names"].tolist()),
+            name_vectors=data["name_vectors"].astype(np.float32),
+        )
+
+
+def matches(phrase: Phrase, words: tuple[str, ...], nouns: frozenset[str]) -> bool:
+    """Whether the phrase's words follow in order and one of its nouns is there."""
+    rest = iter(words)
+    if not all(word in rest for word in phrase.words):
+        return False
+    return not phrase.nouns or any(
+        noun in nouns or all(part in nouns for part in noun.split()) for noun in phrase.nouns
+    )
+
+
+def phrase_bonus(clause: Clause) -> dict[str, float]:
+    """Action -> log-odds from the lexicon; the most specific phrase counts most.
+
+    "take off" beats "take", and "make a call" beats "make".
+    """
+    found: dict[str, tuple[int, float]] = {}
+    nouns = frozenset(clause.words) | {w for r in clause.roles for w in r.text.split()}
+    sizes = _list_sizes()
+    for phrase in load_lexicon().phrases.get(clause.verb, ()):
+        if matches(phrase, clause.words, nouns):
+            rank = phrase.rank / sizes[phrase.action]
+            key = (phrase.specificity, -rank)
+            found[phrase.action] = max(found.get(phrase.action, (0, -1.0)), key)
+    if not found:
+        return {}
+    best = max(specificity for specificity, _ in found.values())
+    return {
+        action: PHRASE_BONUS + RANK_DISCOUNT * rank if specificity == best else VAGUE_BONUS
+        for action, (specificity, rank) in found.items()
+    }
+
+
+@cache
+def _list_sizes() -> dict[str, int]:
+    sizes: dict[str, int] = {}
+    for phrases in load_lexicon().phrases.values():
+        for phrase in phrases:
+            sizes[phrase.action] = max(sizes.get(phrase.action, 1), phrase.rank + 1)
+    return sizes
+
+
+def meaning_logits(text: str) -> np.ndarray:
+    """(classes,) log-probabilities of the head for a text.
+
+    Raises:
+        EncoderMissingError: the encoder is not installed.
+    """
+    head = load_head()
+    logits = head.weights @ load_encoder().encode([text])[0] + head.bias
+    return logits - np.logaddexp.reduce(logits)
+
+
+def score_actions(clause: Clause) -> ActionScores:
+    """Probabilities of the actions for a clause; by the lexicon alone without the encoder."""
+    bonus = phrase_bonus(clause)
+    classes = (*load_knowledge().actions, NO_ACTION)
+    try:
+        logits = meaning_logits(clause.text)
+        classes = load_head().classes
+    except EncoderMissingError:
+        logits = np.zeros(len(classes))
+    no_action = float(np.exp(logits[classes.index(NO_ACTION)]))
+    logits = logits + np.array([bonus.get(name, 0.0) for name in classes])
+    probabilities = np.exp(logits - np.logaddexp.reduce(logits))
+    order = [i for i in np.argsort(-probabilities) if classes[i] != NO_ACTION]
+    ranked = tuple((classes[i], float(probabilities[i])) for i in order)
+    return ActionScores(ranked, no_action, bool(bonus))

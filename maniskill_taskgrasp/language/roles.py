@@ -1,0 +1,122 @@
+"""Which part the nouns of a clause play: what is held, what is worked on, where it happens."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from spacy.tokens import Doc, Token
+
+    from maniskill_taskgrasp.language.mentions import Mention
+
+RoleKind = Literal["target", "instrument", "source", "place"]
+
+INSTRUMENT_WORDS = frozenset(["with", "using", "via", "by", "through"])
+SOURCE_WORDS = frozenset(["from", "off"])
+PLACE_WORDS = frozenset(
+    ["in", "into", "on", "onto", "at", "under", "to", "near", "beside", "over", "behind", "inside", "against", "above", "below", "next", "across", "along", "around", "toward", "towards", "for", "upon", "outside", "between", "down", "up", "out"]
+)
+PRONOUNS = frozenset(["it", "them", "that", "this", "these", "those"])
+SOMETHING = frozenset(["something", "anything", "thing", "things", "stuff", "one", "ones"])
+TOKENS_IN_PHRASE = frozenset(["DET", "ADJ", "NUM", "NOUN", "PROPN", "ADV", "SYM"])
+
+
+@dataclass(frozen=True)
+class Role:
+    """One noun or pronoun and its part."""
+
+    kind: RoleKind
+    text: str
+    at: int
+    """Token where its noun starts."""
+    mention: Mention | None = None
+    """The object it names; None for a pronoun or a noun that the lexicon does not know."""
+    pronoun: bool = False
+
+
+def _governor(doc: Doc, start: int, low: int) -> str | None:
+    """The preposition (or "using") that leads a noun phrase, None for a bare one."""
+    for at in range(start - 1, low, -1):
+        token = doc[at]
+        if token.lower_ in INSTRUMENT_WORDS | SOURCE_WORDS | PLACE_WORDS:
+            return None if token.dep_ == "prt" else token.lower_
+        if token.lower_ in {"of", "'s"}:
+            continue
+        before_noun = token.dep_ in {
+            "amod",
+            "compound",
+            "poss",
+            "det",
+            "nmod",
+            "nummod",
+            "npadvmod",
+        }
+        if before_noun or token.pos_ in {"DET", "ADJ", "NUM", "ADV"}:
+            continue
+        if token.lower_ in PRONOUNS or (at + 1 < start and doc[at + 1].lower_ == "of"):
+            continue
+        return None
+    return None
+
+
+def _kind_of(word: str | None) -> RoleKind:
+    """The part that a preposition gives its noun."""
+    if word in INSTRUMENT_WORDS:
+        return "instrument"
+    if word in SOURCE_WORDS:
+        return "source"
+    return "place" if word in PLACE_WORDS else "target"
+
+
+def _phrase(token: Token) -> str:
+    """The noun with what stands before it, without article."""
+    words = [t.text for t in token.lefts if t.dep_ in {"amod", "compound", "nmod"}]
+    return " ".join([*words, token.text])
+
+
+def find_roles(
+    doc: Doc, mentions: tuple[Mention, ...], verb: int, low: int, high: int
+) -> tuple[Role, ...]:
+    """Roles of all nouns and pronouns in the tokens [low, high) but the verb.
+
+    A noun right behind the verb's preposition ("put on the goggles", "look at the coin") is the
+    target where the clause has no other.
+    """
+    named = {i: m for m in mentions for i in range(m.start, m.end)}
+    roles: list[Role] = []
+    at = low
+    while at < high:
+        token = doc[at]
+        mention = named.get(at)
+        stop = verb if at > verb else low - 1
+        if mention is not None and not mention.start <= verb < mention.end:
+            kind = _kind_of(_governor(doc, mention.start, stop)) if at > verb else "target"
+            roles.append(Role(kind, mention.words, mention.start, mention))
+            at = mention.end
+            continue
+        if at != verb and token.lower_ in PRONOUNS and token.dep_ not in {"det", "mark", "expl"}:
+            kind = _kind_of(_governor(doc, at, stop)) if at > verb else "target"
+            roles.append(Role(kind, token.lower_, at, pronoun=True))
+        elif at != verb and _is_noun(token):
+            kind = _kind_of(_governor(doc, at, stop)) if at > verb else "target"
+            roles.append(Role(kind, _phrase(token), at))
+        at += 1
+    if not any(r.kind == "target" for r in roles):
+        roles = [_promoted(r, doc, verb) for r in roles]
+    return tuple(roles)
+
+
+def _is_noun(token: Token) -> bool:
+    head_noun = token.pos_ in {"NOUN", "PROPN"} and token.dep_ not in {
+        "compound",
+        "nmod",
+        "npadvmod",
+    }
+    return (head_noun or token.lower_ in SOMETHING) and token.is_alpha
+
+
+def _promoted(role: Role, doc: Doc, verb: int) -> Role:
+    beside_verb = role.kind == "place" and doc[verb + 1].lower_ in PLACE_WORDS
+    between = [t for t in doc[verb + 2 : role.at] if t.pos_ not in TOKENS_IN_PHRASE | {"PRON"}]
+    return replace(role, kind="target") if beside_verb and not between else role

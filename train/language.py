@@ -1,0 +1,198 @@
+"""Train the action head of the language front end on sentences made from the table.
+
+python train/language.py
+
+Every sentence is filled from `assets/knowledge.json` and the front end's own lexicon; no sentence
+of the evaluation set is read. The result is one npz file: the head (74 actions and "no action of
+the table") and the vectors of the object names. Same seed, same file.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import tempfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+import tyro
+
+from maniskill_taskgrasp.knowledge import load_knowledge
+from maniskill_taskgrasp.language.actions import NO_ACTION
+from maniskill_taskgrasp.language.encoder import load_encoder
+from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, Phrase, load_lexicon
+from maniskill_taskgrasp.language.verbs import base_of
+
+DEFAULT_OUT = Path(__file__).resolve().parent.parent / "assets" / "checkpoints" / "language.npz"
+TARGETS = ["table", "floor", "wall", "window", "part", "machine", "surface", "wood", "bolt", "nail", "board", "door", "dishes", "hands", "hole", "edge", "plant", "shelf", "mirror", "sink", "stain", "pipe", "metal", "water", "letter", "line"]
+"""Things that tools are used on; the table's own objects are what is held."""
+OFF_TOPIC_VERBS = ["predict", "guess", "forgive", "solve", "explain", "marry", "teach", "sing", "dance", "dream about", "vote for", "invest in", "apologize for", "celebrate", "hire", "fire", "sue", "cure", "bake", "fry", "swim in", "ski down", "climb", "hack", "download", "compile", "debug", "google", "stream", "subscribe to", "cancel", "refund", "pay", "sell", "buy", "rent", "rob", "conquer", "worship", "rhyme", "imagine", "forecast", "arrest", "elect", "rescue", "impersonate", "summarize", "spell", "define", "remind me about", "recommend", "schedule", "fly to", "visit", "travel to", "emigrate to", "become", "believe in", "insult", "praise", "paraphrase", "quote", "recite"]
+OFF_TOPIC_NOUNS = ["the weather", "the mortgage", "a poem", "the election", "my homework", "the movie", "a story", "the train", "a restaurant", "the tax", "the king", "the code", "a recipe", "an email account", "the website", "history", "love", "the score", "the password", "a lawyer", "the concert", "physics", "the moon", "the war", "a holiday", "the meeting", "an idea", "the news", "a hotel", "my salary", "the team", "the virus", "the ocean"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LanguageConfig:
+    """Train the action head of the language front end."""
+
+    out: Path = DEFAULT_OUT
+    """Where to write the npz file."""
+    per_phrase: int = 10
+    """Sentences made of each phrase of the lexicon."""
+    off_topic: int = 900
+    """Sentences of the class "no action of the table"."""
+    weight_decay: float = 1e-5
+    """L2 penalty on the head's weights."""
+    steps: int = 60
+    """L-BFGS iterations."""
+    seed: int = 0
+    """Seed of the sentence generator."""
+
+
+def objects_of(action: str) -> list[str]:
+    """Objects that people used for the action, most frequent first."""
+    counts = {o: sum(n) for (o, a), n in load_knowledge().pair_counts.items() if a == action}
+    return sorted(counts, key=lambda name: (-counts[name], name))
+
+
+def annotator_phrases(action: str) -> list[str]:
+    """The table's task phrases as imperatives: "wiping counter" -> "wipe counter"."""
+    imperatives = []
+    for text in load_knowledge().actions[action].phrases:
+        first, _, rest = text.partition(" ")
+        base = base_of(first)
+        if base is not None:
+            imperatives.append(f"{base} {rest}".strip())
+    return imperatives
+
+
+def fill(phrase: Phrase, rng: random.Random) -> str:
+    """One imperative from a phrase of the lexicon."""
+    all_names = sorted(load_lexicon().names)
+    used = objects_of(phrase.action)
+    held = rng.choice(used) if used and rng.random() < 0.7 else rng.choice(all_names)
+    target = rng.choice(TARGETS)
+    noun = rng.choice(sorted(phrase.nouns)) if phrase.nouns else ""
+    verb = phrase.text
+    tool = phrase.action in TOOL_ACTIONS
+    if noun:
+        with_tool = [f"{verb} the {noun} with the {held}"] if tool else []
+        return rng.choice([f"{verb} {noun}", f"{verb} the {noun}", f"{verb} a {noun}", *with_tool])
+    split = f"{phrase.verb} the {held} {' '.join(phrase.words)}".strip()
+    forms = [verb, f"{verb} it", f"{verb} the {held}", f"{verb} the {held}", split]
+    if tool:
+        forms += [f"{verb} the {target} with the {held}", f"{verb} with the {held}"]
+        forms += [f"{verb} the {target}", f"{verb} my {target} with the {held}"]
+    else:
+        forms += [f"{verb} this {held}", f"{verb} the {held} on the {target}"]
+    return rng.choice(forms)
+
+
+def make_sentences(config: LanguageConfig) -> tuple[list[str], list[str]]:
+    """Sentences and their actions, deduplicated in order."""
+    rng = random.Random(config.seed)
+    pairs: dict[tuple[str, str], None] = {}
+    for phrases in load_lexicon().phrases.values():
+        for phrase in phrases:
+            for _ in range(config.per_phrase):
+                pairs[fill(phrase, rng), phrase.action] = None
+    for action in load_knowledge().actions:
+        for text in annotator_phrases(action):
+            pairs[text, action] = None
+            for name in objects_of(action)[:4]:
+                pairs[f"{text} with the {name}", action] = None
+    for _ in range(config.off_topic):
+        sentence = f"{rng.choice(OFF_TOPIC_VERBS)} {rng.choice(OFF_TOPIC_NOUNS)}"
+        pairs[sentence, NO_ACTION] = None
+    return [text for text, _ in pairs], [action for _, action in pairs]
+
+
+def fit_head(
+    vectors: np.ndarray, labels: np.ndarray, classes: int, config: LanguageConfig
+) -> tuple[np.ndarray, np.ndarray]:
+    """Softmax regression with inverse-square-root class weights.
+
+    Args:
+        vectors: (n, d) unit sentence vectors.
+        labels: (n,) class of each.
+        classes: number of classes.
+        config: penalty and iterations.
+
+    Returns:
+        (classes, d) weights and (classes,) biases.
+    """
+    torch.manual_seed(config.seed)
+    x = torch.tensor(vectors, dtype=torch.float64)
+    y = torch.tensor(labels)
+    counts = torch.bincount(y, minlength=classes).clamp(min=1).double()
+    weights = torch.zeros(classes, x.shape[1], dtype=torch.float64, requires_grad=True)
+    bias = torch.zeros(classes, dtype=torch.float64, requires_grad=True)
+    solver = torch.optim.LBFGS(
+        [weights, bias], max_iter=config.steps, line_search_fn="strong_wolfe"
+    )
+    sample_weights = counts.rsqrt()
+
+    def closure() -> torch.Tensor:
+        solver.zero_grad()
+        logits = x @ weights.T + bias
+        loss = torch.nn.functional.cross_entropy(logits, y, weight=sample_weights)
+        loss = loss + config.weight_decay * weights.square().sum()
+        loss.backward()
+        return loss
+
+    solver.step(closure)
+    return weights.detach().numpy(), bias.detach().numpy()
+
+
+def encode(texts: list[str]) -> np.ndarray:
+    """(n, d) vectors, in batches of similar length."""
+    encoder = load_encoder()
+    order = sorted(range(len(texts)), key=lambda i: len(texts[i]))
+    out = np.zeros((len(texts), encoder.encode(["a"]).shape[1]), np.float32)
+    for start in range(0, len(order), 64):
+        batch = order[start : start + 64]
+        out[batch] = encoder.encode([texts[i] for i in batch])
+    return out
+
+
+def save_atomically(path: Path, arrays: dict[str, np.ndarray]) -> None:
+    """Write an npz file that is either whole or absent."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
+        np.savez_compressed(file, **arrays)
+    Path(file.name).chmod(0o644)
+    os.replace(file.name, path)
+
+
+def train(config: LanguageConfig) -> dict[str, object]:
+    """Make the sentences, fit the head, write the file; returns what the card states."""
+    torch.set_num_threads(1)
+    texts, names = make_sentences(config)
+    classes = [*load_knowledge().actions, NO_ACTION]
+    labels = np.array([classes.index(name) for name in names])
+    vectors = encode(texts)
+    weights, bias = fit_head(vectors, labels, len(classes), config)
+    fitted = float(((vectors @ weights.T + bias).argmax(1) == labels).mean())
+    object_names = sorted(load_lexicon().names)
+    save_atomically(
+        config.out,
+        {
+            "weights": weights.astype(np.float16),
+            "bias": bias.astype(np.float32),
+            "classes": np.array(classes),
+            "names": np.array(object_names),
+            "name_vectors": encode(object_names).astype(np.float16),
+        },
+    )
+    return {
+        "sentences": len(texts),
+        "classes": len(classes),
+        "fitted_top1": round(fitted, 3),
+        "config": {k: str(v) for k, v in asdict(config).items() if k != "out"},
+    }
+
+
+if __name__ == "__main__":
+    print(json.dumps(train(tyro.cli(LanguageConfig)), indent=2))
