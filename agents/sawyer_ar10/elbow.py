@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from maniskill_taskgrasp.agents.sawyer_ar10.shapes import Array, Soup, closed_skin, fan, skin
 
@@ -33,39 +34,42 @@ class Elbow:
     cut: float | None = None
     """Distance of the flat from the corner, towards (0, -1, 1); None leaves the corner round."""
 
+    def _squeezed(self, inward: Array, room: float) -> Array:
+        """Inward offsets of a tube at the bend, its inner half flattened to fit into `room`."""
+        inner = min(self.radius_bend, room - self.fillet)
+        return np.where(inward > 0, inner, self.radius_bend) * inward
+
     def _lines(self) -> Array:
         """(SECTORS, SAMPLES, 3) points along the tube, one line for every angle around it."""
         angles = np.linspace(0.0, 2.0 * np.pi, SECTORS, endpoint=False)[:, None]
-        inward = np.cos(angles)
-        bent = self.radius_bend * inward
-        enter = np.where(
-            bent > 0, inward * min(self.radius_bend, self.length_out - self.fillet), bent
-        )
-        leave = np.where(
-            bent > 0, inward * min(self.radius_bend, self.length_in - self.fillet), bent
-        )
-        slack = self.bend - bent - self.fillet
+        inward, sideways = np.cos(angles), np.sin(angles)
+        y_before = self._squeezed(inward, self.length_out)
+        z_after = -self._squeezed(inward, self.length_in)
+        slack = self.bend - self.radius_bend * inward - self.fillet
         rounding = self.fillet + (slack + np.sqrt(slack**2 + self.fillet**2)) / 2.0
-        rounding = np.minimum(rounding, np.minimum(self.length_out - enter, self.length_in - leave))
+        rounding = np.minimum(rounding, self.length_out - y_before)
+        rounding = np.minimum(rounding, self.length_in + z_after)
+
         t = np.linspace(0.0, 1.0, SAMPLES // 3)[None]
         ease = t * t * (3.0 - 2.0 * t)
-        sides = np.sin(angles)
-
-        width_in = self.radius_in + (self.radius_bend - self.radius_in) * ease
-        y_in = inward * self.radius_in + (enter - inward * self.radius_in) * ease
-        z_in = -self.length_in + (self.length_in - leave - rounding) * t
-        into = np.stack([sides * width_in, y_in, z_in], axis=2)
-
         turn = t * np.pi / 2.0
-        y_turn = enter + rounding * (1.0 - np.cos(turn))
-        z_turn = -leave - rounding * (1.0 - np.sin(turn))
-        around = np.stack([sides * self.radius_bend + 0.0 * turn, y_turn, z_turn], axis=2)
-
-        width_out = self.radius_bend + (self.radius_out - self.radius_bend) * ease
-        y_out = enter + rounding + (self.length_out - enter - rounding) * t
-        z_out = -leave + (leave - inward * self.radius_out) * ease
-        out = np.stack([sides * width_out, y_out, z_out], axis=2)
-        return np.concatenate([into, around, out], axis=1)
+        straight_in = (
+            sideways * _mix(self.radius_in, self.radius_bend, ease),
+            _mix(inward * self.radius_in, y_before, ease),
+            _mix(-self.length_in, z_after - rounding, t),
+        )
+        around = (
+            sideways * np.full_like(t, self.radius_bend),
+            y_before + rounding * (1.0 - np.cos(turn)),
+            z_after - rounding * (1.0 - np.sin(turn)),
+        )
+        straight_out = (
+            sideways * _mix(self.radius_bend, self.radius_out, ease),
+            _mix(y_before + rounding, self.length_out, t),
+            _mix(z_after, -inward * self.radius_out, ease),
+        )
+        pieces = [np.stack(piece, axis=2) for piece in (straight_in, around, straight_out)]
+        return np.concatenate(pieces, axis=1)
 
     def _cuts(self, lines: Array) -> tuple[Array, Array]:
         """(SECTORS,) fractional sample at which each line meets the flat, and leaves it again.
@@ -94,11 +98,15 @@ class Elbow:
         soup += [fan(before[0]), fan(after[-1, ::-1])]
         if self.cut is None:
             return np.concatenate(soup), np.empty((0, 3, 3))
-        inner_rows = np.flatnonzero(last > first)  # One more on either side closes the points.
-        open_rows = np.arange(inner_rows[0] - 1, inner_rows[-1] + 2)
-        loop = np.concatenate([after[0, open_rows], before[-1, open_rows[::-1]]])
-        soup.append(fan(loop))
-        return np.concatenate(soup), _cap(loop)
+        above = np.flatnonzero(last > first)
+        wider = np.arange(above[0] - 1, above[-1] + 2)  # Closes the points at both sides.
+        soup.append(fan(_loop(before, after, wider)))
+        return np.concatenate(soup), _cap(_loop(before, after, above))
+
+
+def _mix(start: Array | float, stop: Array | float, share: Array) -> Array:
+    """The value that lies at `share` of the way from `start` to `stop`."""
+    return start + (stop - start) * share
 
 
 def _resample(lines: Array, start: Array, stop: Array) -> Array:
@@ -108,6 +116,11 @@ def _resample(lines: Array, start: Array, stop: Array) -> Array:
     share = (positions - low)[:, :, None]
     rows = np.arange(SECTORS)
     return (1.0 - share) * lines[rows, low] + share * lines[rows, low + 1]
+
+
+def _loop(before: Array, after: Array, rows: NDArray[np.int64]) -> Array:
+    """(2 n, 3) points around the flat: where the given lines leave it, and where they meet it."""
+    return np.concatenate([after[0, rows], before[-1, rows[::-1]]])
 
 
 def _cap(loop: Array) -> Soup:

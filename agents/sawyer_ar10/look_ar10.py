@@ -8,7 +8,6 @@ pictures show contact where the physics has it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import pi
 
 import numpy as np
 
@@ -30,11 +29,9 @@ SHEET = 1.3
 
 def _twin(discs: list[tuple[float, float, float]], half: float, axis: str = "x") -> Look:
     """Two parallel plates, `half` to either side."""
-    way = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}[axis]
-    return [
-        ("sheet", place(plate(discs, SHEET, axis), np.multiply(way, side * half)))
-        for side in (-1, 1)
-    ]
+    offsets = {"x": (half, 0.0, 0.0), "y": (0.0, half, 0.0)}[axis]
+    sheet = plate(discs, SHEET, axis)
+    return [("sheet", place(sheet, [side * way for way in offsets])) for side in (-1, 1)]
 
 
 def _pin(y: float, z: float, length: float = 13.0) -> Look:

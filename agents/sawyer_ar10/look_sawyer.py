@@ -150,7 +150,7 @@ def head() -> Look:
         white = plate([(side * 48, 104, 27), (side * 48, 118, 27)], 1.2, "x", 0.3)
         pupil = plate([(side * 45, 103, 15), (side * 45, 107, 15)], 1.0, "x", 0.3)
         spark = plate([(side * 45 + 5, 112, 4)], 0.8, "x", 0.2)
-        brow = plate([(side * 32, 160, 3.2), (side * 64, 157, 3.2)], 1.2, "x", 0.3)
+        brow = plate([(side * 32, 159, 3.2), (side * 64, 160, 3.2)], 1.2, "x", 0.3)
         look += [
             ("eye", place(white, (27.8, 0, 0))),
             ("screen", place(pupil, (28.6, 0, 0))),
@@ -163,9 +163,15 @@ def head() -> Look:
 def upper_shoulder() -> Look:
     """l1: from the shoulder sideways, then forward."""
     bend = Elbow(
-        length_in=134, length_out=139.5, radius_in=68, radius_bend=62, radius_out=53.5, bend=8,
+        length_in=134,
+        length_out=139.5,
+        radius_in=68,
+        radius_bend=62,
+        radius_out=53.5,
+        bend=8,
+        fillet=18,
         cut=22,
-    )  # fmt: skip
+    )
     return [_ring(68, 1), *_tube(bend, (0, 0, 142.5), (0, 0, pi))]
 
 
@@ -180,8 +186,15 @@ def upper_arm() -> Look:
 def elbow() -> Look:
     """l3: sideways, then forward."""
     bend = Elbow(
-        length_in=118, length_out=124.5, radius_in=53.5, radius_bend=50, radius_out=45, bend=7, fillet=16, cut=18,
-    )  # fmt: skip
+        length_in=118,
+        length_out=124.5,
+        radius_in=53.5,
+        radius_bend=50,
+        radius_out=45,
+        bend=7,
+        fillet=16,
+        cut=18,
+    )
     return [_ring(53.5, -14), *_tube(bend, (0, 0, -126.5), (pi, 0, 0))]
 
 

@@ -84,7 +84,8 @@ def plate(
     angles = np.linspace(0.0, 2.0 * np.pi, sectors, endpoint=False)
     ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     table = np.array(discs, dtype=float)
-    farthest = np.argmax(ways @ table[:, :2].T + table[:, 2], axis=1)
+    reach = np.round(ways @ table[:, :2].T + table[:, 2], 9)  # Ties must not hang on a last bit.
+    farthest = np.argmax(reach, axis=1)
     half = thickness / 2.0
     rings = []
     for inset, height in ((bevel, -half), (0, -half + bevel), (0, half - bevel), (bevel, half)):
