@@ -123,18 +123,29 @@ def rounded_box(size: Sequence[float], radius: float, steps: int = 4) -> Soup:
     return loft([*lower, *((-z, x, y, r) for z, x, y, r in reversed(lower))], steps + 1)
 
 
+def _corner_angles(soup: Soup) -> Array:
+    """(n, 3) [rad] angle of each triangle at each of its corners."""
+    ahead = np.roll(soup, -1, axis=1) - soup
+    ahead /= np.linalg.norm(ahead, axis=2, keepdims=True)
+    cosines = -np.sum(ahead * np.roll(ahead, 1, axis=1), axis=2)
+    return np.arccos(np.clip(cosines, -1.0, 1.0))
+
+
 def _corner_normals(soup: Soup, keys: NDArray[np.int64], crease: float) -> Array:
-    """(3 n, 3) unit normal of every corner: its face and the neighbours within `crease`."""
-    areas = np.cross(soup[:, 1] - soup[:, 0], soup[:, 2] - soup[:, 0])
-    units = areas / np.linalg.norm(areas, axis=1, keepdims=True)
-    faces = np.repeat(np.arange(len(soup)), 3)
+    """(3 n, 3) unit normal of every corner: its face and the neighbours within `crease`.
+
+    Faces count by their angle at the corner, so it does not matter along which diagonal a quad is
+    cut into triangles.
+    """
+    across = np.cross(soup[:, 1] - soup[:, 0], soup[:, 2] - soup[:, 0])
+    units = np.repeat(across / np.linalg.norm(across, axis=1, keepdims=True), 3, axis=0)
+    weighted = units * _corner_angles(soup).reshape(-1, 1)
     order = np.argsort(keys, kind="stable")
     starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
-    normals = np.empty((len(keys), 3))
+    normals = np.empty_like(units)
     for corners in np.split(order, starts[1:]):
-        own = faces[corners]
-        near = units[own] @ units[own].T >= np.cos(crease)
-        normals[corners] = near.astype(float) @ areas[own]
+        near = units[corners] @ units[corners].T >= np.cos(crease)
+        normals[corners] = near.astype(float) @ weighted[corners]
     return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
