@@ -11,11 +11,10 @@ import numpy as np
 
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
-from maniskill_taskgrasp.language.lexicon import load_lexicon
+from maniskill_taskgrasp.language.lexicon import load_lexicon, matches
 
 if TYPE_CHECKING:
     from maniskill_taskgrasp.language.clauses import Clause
-    from maniskill_taskgrasp.language.lexicon import Phrase
 
 NO_ACTION = "no action of the table"
 """The head's class for everything that is none of the 74 actions."""
@@ -65,23 +64,17 @@ def load_head() -> Head:
         )
 
 
-def matches(phrase: Phrase, words: tuple[str, ...], nouns: frozenset[str]) -> bool:
-    """Whether the phrase's words follow in order and one of its nouns is there."""
-    rest = iter(words)
-    if not all(word in rest for word in phrase.words):
-        return False
-    return not phrase.nouns or any(
-        noun in nouns or all(part in nouns for part in noun.split()) for noun in phrase.nouns
-    )
-
-
-def phrase_bonus(clause: Clause) -> dict[str, float]:
+def phrase_bonus(clause: Clause, referents: frozenset[str] = frozenset()) -> dict[str, float]:
     """Action -> log-odds from the lexicon; the most specific phrase counts most.
 
     "take off" beats "take", and "make a call" beats "make".
+
+    Args:
+        clause: what to match.
+        referents: words for what its pronouns refer to.
     """
     found: dict[str, tuple[int, float]] = {}
-    nouns = frozenset(clause.words) | {w for r in clause.roles for w in r.text.split()}
+    nouns = referents | frozenset(clause.words) | {w for r in clause.roles for w in r.text.split()}
     sizes = _list_sizes()
     for phrase in load_lexicon().phrases.get(clause.verb, ()):
         if matches(phrase, clause.words, nouns):
@@ -117,9 +110,14 @@ def meaning_logits(text: str) -> np.ndarray:
     return logits - np.logaddexp.reduce(logits)
 
 
-def score_actions(clause: Clause) -> ActionScores:
-    """Probabilities of the actions for a clause; by the lexicon alone without the encoder."""
-    bonus = phrase_bonus(clause)
+def score_actions(clause: Clause, referents: frozenset[str] = frozenset()) -> ActionScores:
+    """Probabilities of the actions for a clause; by the lexicon alone without the encoder.
+
+    Args:
+        clause: what to match.
+        referents: words for what its pronouns refer to.
+    """
+    bonus = phrase_bonus(clause, referents)
     classes = (*load_knowledge().actions, NO_ACTION)
     try:
         logits = meaning_logits(clause.text)

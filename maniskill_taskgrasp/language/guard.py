@@ -8,16 +8,12 @@ from maniskill_taskgrasp.errors import echo
 from maniskill_taskgrasp.language.instruction import Rejected
 from maniskill_taskgrasp.language.text import MAX_CHARACTERS
 from maniskill_taskgrasp.language.verbs import base_of
+from maniskill_taskgrasp.language.words import word_set
 
 TRY = "try 'tighten the bolt with the wrench' or 'hand me the mug'"
 
-FOREIGN_WORDS = frozenset(
-    # German, Dutch, French, Spanish, Portuguese, Italian, Nordic, Polish, Turkish, Indonesian.
-    ["der", "das", "und", "ist", "nicht", "mit", "dem", "den", "ein", "eine", "einen", "bitte", "ich", "du", "mir", "auf", "zu", "gib", "öffne", "nimm", "mach", "wisch", "halt", "het", "een", "mij", "geef", "alsjeblieft", "van", "niet", "op", "doe", "pak", "le", "la", "les", "des", "du", "une", "est", "pas", "avec", "pour", "moi", "toi", "donne", "donnez", "ouvre", "ouvrez", "ferme", "prends", "prenez", "mettez", "s'il", "vous", "plaît", "el", "los", "las", "una", "por", "con", "para", "dame", "abre", "cierra", "toma", "pon", "coge", "favor", "limpia", "y", "del", "al", "il", "lo", "gli", "di", "che", "per", "prendi", "apri", "chiudi", "dammi", "e", "um", "uma", "os", "na", "com", "não", "abra", "feche", "pegue", "og", "er", "av", "til", "med", "det", "kan", "vær", "och", "att", "som", "är", "jag", "ge", "öppna", "stäng", "ta", "mi", "na", "się", "jest", "proszę", "podaj", "otwórz", "weź", "bir", "ve", "bu", "lütfen", "aç", "ver", "kapat", "tolong", "buka", "ambil", "dan", "itu", "saya", "je", "tu", "nous", "votre", "mon", "ma", "sur", "dans", "mein", "dein", "deine", "hole", "bring'", "mich", "sie", "wir", "ihr", "haben", "hast", "sind", "ja", "nein", "oui", "non", "sí", "qué", "como", "esta", "este"]
-) - frozenset("e y na ma mi al per la ta os as op bu on halt pack dan ja the van com as")
-ENGLISH_WORDS = frozenset(
-    ["the", "a", "an", "and", "or", "to", "of", "in", "on", "with", "it", "is", "this", "that", "these", "those", "my", "your", "his", "her", "its", "our", "their", "me", "you", "i", "we", "them", "for", "from", "at", "by", "up", "down", "off", "out", "please", "can", "could", "would", "should", "need", "want", "not", "don't", "do", "then", "so", "but", "be", "has", "have", "are", "was", "as", "into", "over", "some", "any", "use"]
-)
+FOREIGN_WORDS = word_set("foreign_words")
+ENGLISH_WORDS = word_set("english_words")
 FOREIGN_SHARE = 0.2  # Share of words that must be another language's function words.
 
 

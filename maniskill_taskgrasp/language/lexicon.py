@@ -13,41 +13,21 @@ from functools import cache
 from importlib.resources import files
 
 from maniskill_taskgrasp.knowledge import load_knowledge
+from maniskill_taskgrasp.language.words import word_map, word_set
 
-TOOL_ACTIONS = frozenset(
-    ["aiming", "applying", "blowing", "brushing", "calling", "cleaning", "cranking", "drilling", "drying", "hammering", "loosening", "measuring", "mopping", "oiling", "pounding", "sanding", "sawing", "screwing", "scrubbing", "spraying", "starting car", "talking on phone", "texting", "tightening", "unlocking", "unscrewing", "vacuuming", "washing", "wiping", "writing"]
-)
+TOOL_ACTIONS = word_set("tool_actions")
 """Actions that people do with a tool, so that the thing acted on need not be what is held."""
 
-TRANSFER_VERBS = frozenset(
-    ["hand", "pass", "bring", "give", "grab", "fetch", "get", "lend", "toss", "reach", "fling", "slide", "shoot", "borrow"]
-)
+TRANSFER_VERBS = word_set("transfer_verbs")
 """Verbs that ask for an object without naming a use; some need a receiver (`clauses`)."""
 
-WEAK_TRANSFER_VERBS = frozenset(["take", "use", "grab", "get", "fetch", "bring", "pick", "have", "employ", "utilize"])
+WEAK_TRANSFER_VERBS = word_set("weak_transfer_verbs")
 """Verbs that only prepare the next task when one follows: "take the pen and write"."""
 
-LIGHT_VERBS = frozenset(["give", "take", "have", "do", "make", "perform", "get", "need", "want", "carry"])
+LIGHT_VERBS = word_set("light_verbs")
 """Verbs that leave the meaning to their noun: "give it a wipe"."""
 
-NOMINALS = {
-    "measurement": "measure",
-    "inspection": "inspect",
-    "examination": "examine",
-    "adjustment": "adjust",
-    "arrangement": "arrange",
-    "removal": "remove",
-    "replacement": "replace",
-    "wash-up": "wash",
-    "grip": "hold",
-    "grasp": "hold",
-    "conversation": "talk",
-    "phonecall": "call",
-    "reading": "read",
-    "tidy": "tidy",
-    "bite": "bite",
-    "laundry": "launder",
-}
+NOMINALS = word_map("nominals")
 """Nouns that name a verb's doing without its form."""
 
 SYNONYM_SCORE = 0.9
@@ -74,6 +54,16 @@ class Phrase:
     @property
     def text(self) -> str:
         return " ".join((self.verb, *self.words))
+
+
+def matches(phrase: Phrase, words: tuple[str, ...], nouns: frozenset[str]) -> bool:
+    """Whether the phrase's words follow the verb in order and one of its nouns is there."""
+    rest = iter(words)
+    if not all(word in rest for word in phrase.words):
+        return False
+    return not phrase.nouns or any(
+        noun in nouns or all(part in nouns for part in noun.split()) for noun in phrase.nouns
+    )
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from maniskill_taskgrasp.language.text import OPENER
+from maniskill_taskgrasp.language.words import word_set
 
 if TYPE_CHECKING:
     from spacy.tokens import Token
@@ -12,19 +13,18 @@ if TYPE_CHECKING:
 Mood = Literal["request", "wish", "statement"]
 """A wish ("I need to tighten this") says what for; a statement asks for nothing."""
 
-CARRIERS = frozenset(
-    ["need", "want", "like", "would", "mind", "think", "ask", "wonder", "appreciate", "suppose", "mean", "ought", "hope", "wish", "expect", "plan", "intend", "try", "help", "let", "go", "be", "feel", "start", "begin", "continue", "require", "deserve", "seem", "proceed", "love", "prefer", "remember", "forget", "manage", "have", "keep", "get", "tell", "please", "require", "know", "see", "say", "suggest", "request", "order", "demand"]
-)
+CARRIERS = word_set("carriers")
 """Verbs that hand their meaning to a verbal complement ("I want you to ...")."""
-OBLIGATIONS = frozenset(
-    ["need", "want", "have", "ought", "suppose", "mean", "require", "deserve", "must", "should", "shall", "can", "could", "will", "would", "'ll", "'d", "may", "might", "get"]
-)
-FORBIDDING = frozenset(["avoid", "stop", "refrain", "quit", "cease", "skip", "forbid", "hate"])
-NEGATIONS = frozenset(["not", "n't", "never", "no", "nor", "neither", "without", "cannot"])
-SELF = frozenset(["i", "we"])
-ADDRESSEE = frozenset(["you", "robot", "who", "someone", "somebody", "anybody", "anyone", "everyone"])
-SUBJECTS = frozenset(["nsubj", "nsubjpass", "csubj", "expl"])
-CHAIN = frozenset(["xcomp", "ccomp", "conj", "pcomp", "advcl", "acl", "dobj", "dep"])
+OBLIGATIONS = word_set("obligations")
+FORBIDDING = word_set("forbidding")
+NEGATIONS = word_set("negations")
+SELF = word_set("self")
+ADDRESSEE = word_set("addressee")
+SUBJECTS = word_set("subjects")
+CHAIN = word_set("chain")
+SAYING = frozenset(["say", "tell", "mean"])
+UNASKED_MARKS = word_set("unasked_marks")
+"""Conjunctions whose clause is told, not asked: "till it shines"."""
 
 
 def is_framed(verb: Token) -> bool:
@@ -36,7 +36,7 @@ def is_framed(verb: Token) -> bool:
 
 def carriers_of(verb: Token) -> list[Token]:
     """Verbs above this one that carry it: "I would like you to wipe" -> would, like."""
-    chain = []
+    chain: list[Token] = []
     token = verb
     while token.dep_ in CHAIN and token.head is not token and len(chain) < 6:
         head = token.head
@@ -87,12 +87,26 @@ def is_passive(verb: Token) -> bool:
     return (needs and gerund) or got
 
 
+def _is_told(verb: Token) -> bool:
+    """Whether the verb stands in a clause that only describes."""
+    marks = {c.lower_ for c in verb.children if c.dep_ in {"mark", "advmod"}}
+    infinitive = any(c.lower_ == "to" for c in verb.children)
+    if verb.dep_ == "relcl" and not infinitive:
+        return True
+    if "if" in marks:
+        return verb.head.lemma_ not in CARRIERS
+    return bool(marks & UNASKED_MARKS)
+
+
 def mood_of(verb: Token) -> Mood:
     """Mood of a verb in its sentence."""
     if is_framed(verb):
         return "request"
+    if _is_told(verb):
+        return "statement"
     subject = subject_of(verb)
-    if subject is None:
+    own = subject is not None and subject.head is verb
+    if subject is None or (not own and verb.head.lemma_ in SAYING and verb.tag_ in {"VB", "VBP"}):
         return "request" if verb.tag_ not in {"VBD", "VBZ"} else "statement"
     word = subject.lower_
     if is_passive(verb):
@@ -102,9 +116,10 @@ def mood_of(verb: Token) -> Mood:
         if asks_you:
             return "request"
         return "wish" if obligation(verb) else "statement"
-    if word in ADDRESSEE or (word in {"'s", "it"} and carriers_of(verb)):
-        past = verb.tag_ == "VBD" and not obligation(verb)
-        return "statement" if past and word != "you" else "request"
+    if word in ADDRESSEE or word == "'s":
+        past = verb.tag_ == "VBD" and word != "you"
+        has = verb.lemma_ == "have"
+        return "statement" if (past or has) and not obligation(verb) else "request"
     return "request" if obligation(verb) and verb.tag_ not in {"VBG", "VBZ"} else "statement"
 
 
@@ -114,13 +129,15 @@ def is_negated(verb: Token) -> bool:
     if verb.dep_ == "conj" and any(c.lower_ == "or" for c in verb.head.children):
         chain.append(verb.head)
     for token in chain:
+        if token.lemma_ in {"mind", "like"} and token is not verb:
+            continue  # "You wouldn't mind opening it" asks for it.
         if any(c.lower_ in NEGATIONS and c.i < token.i for c in token.children):
             return True
     if any(token.lemma_.lower() in FORBIDDING for token in chain[1:]):
         return True
     head = verb.head
     if verb.dep_ in {"pcomp", "pobj"} and head.pos_ in {"ADP", "SCONJ"}:
-        before = verb.doc[head.i - 1].lower_ if head.i else ""
-        return head.lower_ == "without" or before in {"instead", "rather"}
+        lead = verb.doc[head.i - 1].lower_ if head.i else ""
+        return head.lower_ == "without" or lead in {"instead", "rather"}
     before = [t.lower_ for t in verb.doc[max(0, verb.i - 3) : verb.i]]
     return before[-2:] in (["rather", "than"], ["instead", "of"]) or before[-1:] == ["without"]

@@ -11,31 +11,40 @@ from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.actions import load_head
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, load_lexicon
+from maniskill_taskgrasp.language.spelling import respell_name
+from maniskill_taskgrasp.language.words import word_set
 
 if TYPE_CHECKING:
+    from maniskill_taskgrasp.language.clauses import Clause
     from maniskill_taskgrasp.language.mentions import Mention
     from maniskill_taskgrasp.language.plan import Task
     from maniskill_taskgrasp.language.roles import Role
 
 NEAREST_MINIMUM = 0.62  # Cosine below which a name is not the object that was meant.
+SLIP_SCORE = 0.8  # What one slip leaves of a name's certainty.
 CANDIDATES = 5  # Alternatives that an answer lists.
-CONTENT_ACTIONS = frozenset(["pouring", "drinking", "squeezing", "spraying", "eating"])
+CONTENT_ACTIONS = word_set("content_actions")
 """Actions whose target is what comes out; the hand holds the container."""
-PLACING_ACTIONS = frozenset(
-    ["putting", "setting", "arranging", "moving", "hanging", "disposing", "shifting", "replacing", "carrying"]
-)
+PLACING_ACTIONS = word_set("placing_actions")
 """Actions whose place is where the object goes, never what is held."""
-WORK_ACTIONS = frozenset(
-    ["measuring", "mopping", "vacuuming", "sanding", "sawing", "drilling", "hammering", "pounding", "spraying", "aiming", "writing", "oiling", "blowing", "brushing", "unlocking", "starting car", "texting", "calling", "applying"]
-)
+WORK_ACTIONS = word_set("work_actions")
 """Tool actions whose target is what is worked on, unless people held that very object."""
-FIXTURES = frozenset(
-    ["table", "counter surface", "furniture", "door", "cabinet", "cabinet door", "wardrobe door", "dishwasher door", "stair rail", "computer", "picture", "chair", "left hand", "food", "shower curtain"]
-)
+FIXTURES = word_set("fixtures")
 """Things that are cleaned where they are, with a cloth in the hand."""
 HAND_TOOLS = ("wrench", "hex wrench", "screwdriver", "allen wrench", "pliers", "chuck key")
-FASTENING = frozenset(["tightening", "loosening", "screwing", "unscrewing", "turning", "cranking"])
+FASTENING = word_set("fastening")
 """Actions on bolts and screws; people did them with `HAND_TOOLS`, under any of these names."""
+
+
+PHONING = frozenset(["calling", "texting", "talking on phone"])
+"""Actions done on what "on" leads: "write to her on the phone"."""
+HELD_AT_PLACE = {
+    "wiping": frozenset(["towel", "cloth", "washcloth", "paper towel", "tissue"]),
+    "drying": frozenset(["towel", "cloth", "washcloth", "paper towel", "tissue"]),
+    "measuring": frozenset(["scale", "bathroom scale"]),
+    "writing": frozenset(["computer"]),
+}
+"""Tools that English puts behind "on": "dry your hands on the towel"."""
 
 
 @dataclass(frozen=True)
@@ -88,8 +97,12 @@ def from_mention(mention: Mention) -> Held:
     return Held(name, score, tuple([*others, *family][:CANDIDATES]))
 
 
-def from_meaning(words: str) -> Held:
-    """The object nearest in meaning to words that name none; no name where all are far."""
+def from_words(words: str) -> Held:
+    """The object that unknown words mean: one slip away, else nearest in meaning, else none."""
+    respelled = respell_name(words)
+    if respelled is not None:
+        (name, score), *others = load_lexicon().names[respelled]
+        return Held(name, score * SLIP_SCORE, tuple(others), f"read {words!r} as {respelled!r}")
     try:
         ranked = nearest(words)
     except EncoderMissingError:
@@ -97,33 +110,22 @@ def from_meaning(words: str) -> Held:
     name, score = ranked[0]
     if score < NEAREST_MINIMUM:
         return Held(None, score, ranked, wanted=words)
-    return Held(
-        name, score, ranked[1:], f"no object is called {words!r}: took the nearest, {name!r}"
-    )
+    note = f"no object is called {words!r}: took the nearest, {name!r}"
+    return Held(name, score, ranked[1:], note)
 
 
 def from_data(action: str, besides: tuple[tuple[str, float], ...] = ()) -> Held:
     """The object that people used most for an action, said openly."""
     ranked = used_for(action)
     name, share = ranked[0]
-    note = f"no tool was named for {action}: took {name!r}, which people used most often for it"
-    return Held(name, share, tuple([*ranked[1:CANDIDATES], *besides]), note)
+    note = f"no object was named for {action}: took {name!r}, which people used most often for it"
+    return Held(name, share, (*ranked[1:CANDIDATES], *besides), note)
 
 
 def antecedent(task: Task) -> Mention | None:
     """What "it" refers to: the latest object named before the clause."""
     earlier = task.source.earlier
     return earlier[-1] if earlier else None
-
-
-def held_by(role: Role, task: Task) -> Held | None:
-    """The object of a role; None for a pronoun that refers to nothing."""
-    if role.mention is not None:
-        return from_mention(role.mention)
-    if role.pronoun:
-        before = antecedent(task)
-        return from_mention(before) if before is not None else None
-    return from_meaning(role.text)
 
 
 def is_worked_on(name: str, action: str) -> bool:
@@ -135,58 +137,106 @@ def is_worked_on(name: str, action: str) -> bool:
     return action in WORK_ACTIONS and (name, action) not in load_knowledge().pair_counts
 
 
-def choose_object(task: Task, action: str | None) -> Held:
-    """The object of a task: instrument first, then what is acted on, then what people used."""
-    if task.held is not None:
-        held = held_by(task.held, task)
-        if held is not None and held.name is not None:
-            return held
-        if action is None or action not in TOOL_ACTIONS:
-            return held or Held(None, 0.0)
-    if action is None or task.told is None:
-        return Held(None, 0.0)
-    roles = task.told.clause.roles
-    target = next((r for r in roles if r.kind == "target"), None)
-    for role in [r for r in roles if r.kind == "instrument"]:
-        held = held_by(role, task)
-        if held is not None:
-            return held
-    others = [r for r in roles if r.kind in {"source", "place"} and r.mention is not None]
-    if action in {"calling", "texting", "talking on phone"} and others:
-        return from_mention(others[0].mention)
-    if action in CONTENT_ACTIONS and others and (target is None or target.mention is None):
-        return from_mention(others[0].mention)
-    named = next((r for r in roles if r.kind == "target" and r.mention is not None), None)
-    if named is not None:
-        return _from_target(named.mention, action)
-    if target is not None and target.pronoun:
-        return _from_pronoun(task, action)
-    return _from_rest(task, action, target, others)
+def _from_role(role: Role, task: Task) -> Held | None:
+    """The object of a role; None for a pronoun that refers to nothing."""
+    if role.mention is not None:
+        return from_mention(role.mention)
+    if role.pronoun:
+        before = antecedent(task)
+        return from_mention(before) if before is not None else None
+    return from_words(role.text)
 
 
-def _from_target(mention: Mention, action: str) -> Held:
+def _from_acted_on(mention: Mention, action: str) -> Held:
+    """The named target, or the data's tool where the target is only worked on."""
     held = from_mention(mention)
     if held.name is not None and is_worked_on(held.name, action):
         return from_data(action, ((held.name, held.score),))
     return held
 
 
-def _from_pronoun(task: Task, action: str) -> Held:
-    before = antecedent(task)
-    if before is not None:
-        return _from_target(before, action)
-    return from_data(action) if action in TOOL_ACTIONS else Held(None, 0.0)
+def _prepared(task: Task, action: str | None) -> Held | None:
+    """What a transfer or "use" put into the hand; None where it named nothing."""
+    if task.anything and action is not None:
+        return from_data(action)
+    if task.held is None:
+        return None
+    held = _from_role(task.held, task)
+    if held is not None and held.name is None and action in TOOL_ACTIONS:
+        return None
+    return held
 
 
-def _from_rest(task: Task, action: str, target: Role | None, others: list[Role]) -> Held:
-    """Nothing known is acted on: a container or surface, the data's tool, or the nearest name."""
-    unknown = target is not None
-    if others and not (unknown and action in PLACING_ACTIONS) and action not in PLACING_ACTIONS:
-        if action not in TOOL_ACTIONS or not is_worked_on(others[0].mention.objects[0][0], action):
-            return from_mention(others[0].mention)
+def _instrument(task: Task, clause: Clause, action: str) -> Held | None:
+    """What stands behind "with" and the like, or on what people phone."""
+    tool = clause.role("instrument")
+    if tool is not None:
+        held = _from_role(tool, task)
+        if held is not None and (held.name is not None or clause.role("target") is None):
+            return held
+    place = clause.role("place")
+    if place is not None and place.mention is not None:
+        name = place.mention.objects[0][0]
+        if action in PHONING or name in HELD_AT_PLACE.get(action, ()):
+            return from_mention(place.mention)
+    return None
+
+
+def _container(clause: Clause, action: str) -> Held | None:
+    """What something comes out of: "pour from the kettle", "squeeze it out of the tube"."""
+    source = clause.role("source")
+    if action not in CONTENT_ACTIONS or source is None or source.mention is None:
+        return None
+    return from_mention(source.mention)
+
+
+def _target(task: Task, clause: Clause, action: str) -> Held | None:
+    """What the action is done to, where that is what the hand holds."""
+    target = clause.role("target")
+    if target is None:
+        return None
+    if target.mention is not None:
+        return _from_acted_on(target.mention, action)
+    if target.pronoun:
+        before = antecedent(task)
+        return _from_acted_on(before, action) if before is not None else None
+    return None
+
+
+def _elsewhere(clause: Clause, action: str) -> Held | None:
+    """An object named only as source or place, unless the action puts things there."""
+    for kind in ("source", "place"):
+        role = clause.role(kind)
+        if role is None or role.mention is None or action in PLACING_ACTIONS:
+            continue
+        if not is_worked_on(role.mention.objects[0][0], action):
+            return from_mention(role.mention)
+    return None
+
+
+def choose_object(task: Task, action: str | None) -> Held:
+    """The object of a task.
+
+    In this order: what a transfer or "use" names, the instrument, the container, what is acted
+    on, an object named elsewhere, the tool that people used, the nearest name by meaning, and
+    what was spoken of last.
+    """
+    held = _prepared(task, action)
+    if held is not None or action is None or task.told is None:
+        return held or Held(None, 0.0)
+    clause = task.told.clause
+    held = (
+        _instrument(task, clause, action)
+        or _container(clause, action)
+        or _target(task, clause, action)
+        or _elsewhere(clause, action)
+    )
+    if held is not None:
+        return held
+    target = clause.role("target")
     if action in TOOL_ACTIONS:
         return from_data(action)
-    if unknown:
-        return from_meaning(target.text)
-    before = antecedent(task)
+    if target is not None and not target.pronoun:
+        return from_words(target.text)
+    before = antecedent(task) if target is None else None
     return from_mention(before) if before is not None else Held(None, 0.0)

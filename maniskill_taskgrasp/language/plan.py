@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, load_lexicon
 from maniskill_taskgrasp.language.roles import SOMETHING, Role
+from maniskill_taskgrasp.language.words import word_set
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc
@@ -15,17 +16,18 @@ if TYPE_CHECKING:
     from maniskill_taskgrasp.language.mentions import Mention
     from maniskill_taskgrasp.language.segments import Segment
 
-USE_VERBS = frozenset(["use", "employ", "utilize", "utilise"])
-PREPARING_VERBS = USE_VERBS | {"take", "have"}
+USE_VERBS = word_set("use_verbs")
+PREPARING_VERBS = word_set("preparing_verbs")
 """Verbs that, before another request, only say what to do it with."""
+SEE_VERBS = word_set("see_verbs")
+"""Verbs that point at something without a task for the hand: "see the hammer?"."""
 
 
 @dataclass(frozen=True)
 class Told:
-    """A clause with where it stood and what had been mentioned before it."""
+    """A clause with what had been mentioned before it."""
 
     clause: Clause
-    segment: int
     earlier: tuple[Mention, ...]
     """Objects named before this clause, oldest first, without those that were ruled out."""
 
@@ -38,9 +40,14 @@ class Task:
     """What to do; None for a transfer without a purpose."""
     held: Role | None = None
     """What the words of a transfer or of "use" put into the hand."""
-    transfer: bool = False
     preparation: Told | None = None
     """The transfer or "use" that named `held`."""
+    anything: bool = False
+    """The transfer asks for "something", so that the data choose."""
+
+    @property
+    def transfer(self) -> bool:
+        return self.preparation is not None and self.preparation.clause.transfer
 
     @property
     def source(self) -> Told:
@@ -60,10 +67,11 @@ def order_segments(segments: list[Segment]) -> list[int]:
 
 def ruled_out(segment: Segment, doc: Doc, mention: Mention) -> bool:
     """Whether the words say that this object is not meant ("not with the towel")."""
-    if segment.negated and not any(not c.negated for c in doc._.clauses):
-        return not doc._.clauses or doc._.clauses[0].verb in USE_VERBS | {"mind"}
+    clauses = doc._.clauses
+    if segment.negated and all(c.negated for c in clauses):
+        return not clauses or clauses[0].verb in USE_VERBS | {"mind"}
     before = [t.lower_ for t in doc[max(0, mention.start - 3) : mention.start]]
-    return "not" in before and "should" not in before
+    return ("not" in before and "should" not in before) or before[-3:-1] == ["anything", "but"]
 
 
 def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
@@ -75,87 +83,100 @@ def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
         before += [m for m in doc._.mentions if not ruled_out(segment, doc, m)]
     told = []
     for k in order_segments(segments):
-        own: list[Mention] = []
         for clause in docs[k]._.clauses:
             own = [m for m in docs[k]._.mentions if m.end <= clause.at]
-            told.append(Told(clause, k, (*seen[k], *own)))
+            told.append(Told(clause, (*seen[k], *own)))
     return told
 
 
 def contradiction(told: list[Told]) -> str | None:
-    """The verb that is both asked for and forbidden for the same thing, None where there is none."""
+    """The verb that is both asked for and forbidden for the same thing, if there is one."""
     for yes in told:
         for no in told:
             if yes.clause.negated or not no.clause.negated or yes.clause.verb != no.clause.verb:
                 continue
             asked, denied = yes.clause.role("target"), no.clause.role("target")
             unclear = asked is None or denied is None or asked.pronoun or denied.pronoun
-            tools = yes.clause.role("instrument"), no.clause.role("instrument")
-            if (unclear or asked.text == denied.text) and tools[0] == tools[1]:
+            same = unclear or asked.text == denied.text  # type: ignore[union-attr]
+            if same and _tool(yes.clause) == _tool(no.clause):
                 return yes.clause.verb
     return None
 
 
-def _held_role(clause: Clause) -> Role | None:
+def _tool(clause: Clause) -> str | None:
+    role = clause.role("instrument")
+    return role.text if role is not None else None
+
+
+def _names_something(clause: Clause) -> bool:
+    """Whether a clause asks for "something" instead of an object."""
+    target = clause.role("target")
+    return target is not None and target.text.split()[-1] in SOMETHING
+
+
+def held_role(clause: Clause) -> Role | None:
     """What a transfer or "use" clause names; None for "something"."""
-    role = clause.role("target") or clause.role("instrument")
-    return None if role is None or role.text.split()[-1] in SOMETHING else role
+    return None if _names_something(clause) else clause.role("target") or clause.role("instrument")
 
 
-def _is_candidate(told: Told) -> bool:
+def _is_asked(told: Told) -> bool:
     clause = told.clause
     left_alone = clause.verb == "leave" and "alone" in clause.words
-    return clause.mood != "statement" and not clause.negated and not left_alone
+    only_pointed = clause.verb in SEE_VERBS
+    return clause.mood != "statement" and not clause.negated and not left_alone and not only_pointed
 
 
-def may_use(told: Told) -> bool:
-    """Whether the task is one that people do with a tool."""
-    phrases = load_lexicon().phrases.get(told.clause.verb, ())
+def _may_use_tool(clause: Clause) -> bool:
+    """Whether the verb names something that people do with a tool."""
+    phrases = load_lexicon().phrases.get(clause.verb, ())
     return any(p.action in TOOL_ACTIONS and not p.nouns for p in phrases)
 
 
-def _belongs(task: Told, preparation: Told) -> bool:
+def _belongs(told: Told, preparation: Told) -> bool:
     """Whether a request is what a preparing clause was for."""
-    clause = task.clause
+    clause = told.clause
     if clause.purpose or clause.mood == "wish":
         return True
-    target = clause.role("target")
-    refers = any(r.pronoun for r in clause.roles) and preparation.clause.transfer
-    names_own = clause.role("instrument") is not None and clause.role("instrument").mention
-    if names_own and not clause.role("instrument").pronoun:
-        held = _held_role(preparation.clause)
-        return held is not None and held.text == clause.role("instrument").text
-    return refers or target is None or may_use(task)
+    tool, held = clause.role("instrument"), held_role(preparation.clause)
+    if tool is not None and not tool.pronoun:
+        return held is not None and held.text == tool.text
+    refers = any(r.pronoun for r in clause.roles)
+    return refers or clause.role("target") is None or _may_use_tool(clause)
 
 
 def make_tasks(told: list[Told]) -> list[Task]:
     """Requests with their transfers joined; pure transfers stay on their own."""
     tasks: list[Task] = []
     pending: Told | None = None
-    for item in (t for t in told if _is_candidate(t)):
+    for item in filter(_is_asked, told):
         clause = item.clause
         if clause.transfer or clause.verb in PREPARING_VERBS:
-            wished = tasks and tasks[-1].told is not None and tasks[-1].told.clause.mood == "wish"
-            if clause.transfer and wished and tasks[-1].held is None:
-                tasks[-1] = Task(tasks[-1].told, _held_role(clause), True, item)
+            if clause.transfer and tasks and _is_wish_without_tool(tasks[-1]):
+                anything = _names_something(clause)
+                tasks[-1] = Task(tasks[-1].told, held_role(clause), item, anything)
                 continue
-            if pending is not None:
-                tasks.append(_alone(pending))
+            tasks += _alone(pending)
             pending = item
-            continue
-        if pending is not None and _belongs(item, pending):
-            tasks.append(Task(item, _held_role(pending.clause), pending.clause.transfer, pending))
+        elif pending is not None and _belongs(item, pending):
+            anything = _names_something(pending.clause)
+            tasks.append(Task(item, held_role(pending.clause), pending, anything))
+            pending = None
         else:
-            if pending is not None:
-                tasks.append(_alone(pending))
+            tasks += _alone(pending)
             tasks.append(Task(item))
-        pending = None
-    if pending is not None:
-        tasks.append(_alone(pending))
-    return tasks
+            pending = None
+    return tasks + _alone(pending)
 
 
-def _alone(told: Told) -> Task:
+def _is_wish_without_tool(task: Task) -> bool:
+    wished = task.told is not None and task.told.clause.mood == "wish"
+    return wished and task.preparation is None
+
+
+def _alone(told: Told | None) -> list[Task]:
+    """The task of a preparing clause that nothing followed."""
+    if told is None:
+        return []
     if told.clause.transfer:
-        return Task(None, _held_role(told.clause), True, told)
-    return Task(told)
+        return [Task(None, held_role(told.clause), told)]
+    return [Task(told)]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
+from maniskill_taskgrasp.language.words import word_set
+
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
 
@@ -12,14 +14,12 @@ if TYPE_CHECKING:
 
 RoleKind = Literal["target", "instrument", "source", "place"]
 
-INSTRUMENT_WORDS = frozenset(["with", "using", "via", "by", "through"])
-SOURCE_WORDS = frozenset(["from", "off"])
-PLACE_WORDS = frozenset(
-    ["in", "into", "on", "onto", "at", "under", "to", "near", "beside", "over", "behind", "inside", "against", "above", "below", "next", "across", "along", "around", "toward", "towards", "for", "upon", "outside", "between", "down", "up", "out"]
-)
-PRONOUNS = frozenset(["it", "them", "that", "this", "these", "those"])
-SOMETHING = frozenset(["something", "anything", "thing", "things", "stuff", "one", "ones"])
-TOKENS_IN_PHRASE = frozenset(["DET", "ADJ", "NUM", "NOUN", "PROPN", "ADV", "SYM"])
+INSTRUMENT_WORDS = word_set("instrument_words")
+SOURCE_WORDS = word_set("source_words")
+PLACE_WORDS = word_set("place_words")
+PRONOUNS = word_set("pronouns")
+SOMETHING = word_set("something")
+TOKENS_IN_PHRASE = word_set("tokens_in_phrase")
 
 
 @dataclass(frozen=True)

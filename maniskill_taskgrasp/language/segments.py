@@ -8,19 +8,22 @@ from typing import Literal
 
 from maniskill_taskgrasp.language.lexicon import load_lexicon
 from maniskill_taskgrasp.language.text import FILLERS, OPENER, strip_opener
+from maniskill_taskgrasp.language.words import word_set
 
-CONNECTORS = frozenset(["and", "then", "but", "so", "or", "before", "after", "afterwards", "next"])
+CONNECTORS = word_set("connectors")
 NEGATORS = ("do not ", "don't ", "never ", "not to ", "no need to ", "there's no need to ", "not ")
-DETERMINERS = frozenset(
-    ["the", "a", "an", "this", "that", "these", "those", "my", "your", "his", "her", "its", "our", "their", "some", "any", "it", "them", "him", "me", "us", "one", "two", "three", "each", "every", "all", "both", "another", "something", "everything"]
-)
-PARTICLES = frozenset(
-    ["up", "down", "off", "on", "out", "in", "away", "over", "back", "aside", "apart", "together", "around", "open", "shut", "along"]
-)
+DETERMINERS = word_set("determiners")
+PARTICLES = word_set("particles")
 AFTER_VERB = (
-    DETERMINERS | PARTICLES | frozenset(["with", "from", "into", "onto", "at", "to", "for", "using", "again"])
+    DETERMINERS
+    | PARTICLES
+    | frozenset(["with", "from", "into", "onto", "at", "to", "for", "using", "again"])
 )
 """Words that follow a verb at the start of a new request."""
+IMPERATIVE_ONLY = word_set("imperative_only")
+"""Base verbs that start an imperative without naming an action of the data."""
+LEADING_TOOL = re.compile(r"(?:with|using|by|in|on|at|from)\s[^,]+?,\s*(?=\w)")
+"""A phrase before the imperative that belongs behind it: "with the ruler, measure it"."""
 NEW_SUBJECT = re.compile(r",\s+(?=(?:i|i'm|i'll|i'd|we|we'll|you)\s)")
 
 Order = Literal["after next", "as told"]
@@ -71,28 +74,38 @@ def split_requests(sentence: str) -> list[str]:
     return [part.strip(" ,") for part in parts if part.strip(" ,")]
 
 
+def _starts_request(body: str) -> bool:
+    """Whether the first word is an imperative."""
+    first = body.partition(" ")[0].strip(",")
+    asks_person = re.match(r"(do|have|will|would|can|could) (you|we|i)\b", body)
+    return first in load_lexicon().verbs | IMPERATIVE_ONLY and not asks_person
+
+
+def _move_lead_behind(body: str) -> str:
+    """The imperative first where a phrase stands before it, with or without its comma."""
+    lead = LEADING_TOOL.match(body)
+    if lead and _starts_request(strip_opener(body[lead.end() :])):
+        return f"{strip_opener(body[lead.end() :])} {lead.group().strip(' ,')}"
+    if body.partition(" ")[0] in {"with", "using", "by"}:
+        words = body.split()
+        for at in range(2, len(words)):
+            if _is_request_start(words, at):
+                return " ".join([*words[at:], *words[:at]])
+    return body
+
+
 def frame(part: str) -> Segment:
     """Put "you should (not)" before an imperative; leave anything else as it is."""
-    order: Order = "as told"
-    if part.startswith("before "):
-        order = "after next"
-    body = strip_opener(part)
+    order: Order = "after next" if part.startswith("before ") else "as told"
+    body = strip_opener(re.sub(r"\bplease\b,?\s*", "", part))
     negated = False
     for negator in NEGATORS:
         if body.startswith(negator):
             body, negated = body[len(negator) :], True
             break
-    body = strip_opener(body) if not negated else body
-    first = body.partition(" ")[0].strip(",")
-    pronoun_next = re.match(r"(do|have|will|would|can|could) (you|we|i)\b", body)
-    if first in load_lexicon().verbs | IMPERATIVE_ONLY and not pronoun_next:
+    body = body if negated else _move_lead_behind(strip_opener(body))
+    if _starts_request(body):
         framed = OPENER + ("not " if negated else "") + body
-    elif negated:
-        framed = "not " + body
     else:
-        framed = body
+        framed = "not " + body if negated else body
     return Segment(part, framed, negated, order)
-
-
-IMPERATIVE_ONLY = frozenset(["leave", "avoid", "stop", "quit", "refrain", "let", "go", "help", "touch", "cut", "need"])
-"""Base verbs that start an imperative without naming an action of the data."""

@@ -1,21 +1,24 @@
-"""Slips of the keyboard: unknown words become the nearest word of the lexicon, and a note says so."""
+"""Slips of the keyboard: unknown words become the nearest word of the lexicon, with a note."""
 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from functools import cache
 
+from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.guard import ENGLISH_WORDS
 from maniskill_taskgrasp.language.lexicon import load_lexicon
 from maniskill_taskgrasp.language.verbs import base_forms
+from maniskill_taskgrasp.language.words import word_set
 
-COMMON_WORDS = 16000  # Entries of the encoder's vocabulary that count as common English.
 LONG_WORD = 6  # From this length on two slips are forgiven, before it one.
 SHORTEST = 3  # Shorter words are left as they are.
-EXTRA_WORDS = frozenset(
-    ["please", "could", "would", "should", "with", "using", "from", "some", "this", "that", "something", "need", "want", "table", "floor", "wall", "nail", "bolt", "screw", "hands", "hand", "water", "kitchen", "window", "door", "then", "after", "before", "first", "again", "and", "the", "you", "your", "little", "very", "don't", "not", "just", "only", "because"]
-)
+MAX_UNKNOWN = 6  # More unknown words than this are no slips; it also bounds the time.
+EXTRA_WORDS = word_set("extra_words")
+FUSED = frozenset(["the", "it", "this", "that", "my", "up", "down", "with", "off", "out"])
+"""Words that are often typed without the space before them."""
 
 
 def slip_distance(a: str, b: str, most: int) -> int:
@@ -28,7 +31,9 @@ def slip_distance(a: str, b: str, most: int) -> int:
     """
     if abs(len(a) - len(b)) > most:
         return most + 1
-    before, row = [], list(range(len(b) + 1))
+    older: list[int] = []
+    before: list[int] = []
+    row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):
         older, before, row = before, row, [i] + [0] * len(b)
         for j, y in enumerate(b, 1):
@@ -41,69 +46,108 @@ def slip_distance(a: str, b: str, most: int) -> int:
 
 
 @cache
+def likely_words() -> frozenset[str]:
+    """Words that a slip most likely meant: names of objects, typical verbs, function words."""
+    names = {p for name in load_knowledge().objects for p in re.split(r"[^a-z]+", name.lower())}
+    first = {p.verb for phrases in load_lexicon().phrases.values() for p in phrases if p.rank < 5}
+    return frozenset(names | first | ENGLISH_WORDS | EXTRA_WORDS)
+
+
+@cache
 def domain_words() -> frozenset[str]:
     """Words that instructions are made of: names, verbs in all forms, function words."""
     pieces = {p for w in load_lexicon().words() for p in re.split(r"[^a-z]+", w)}
-    words = pieces | set(base_forms()) | ENGLISH_WORDS | EXTRA_WORDS
     plurals = {w + "s" for w in pieces if len(w) > SHORTEST}
-    return frozenset(w for w in words | plurals if len(w) > 1)
+    words = pieces | plurals | set(base_forms()) | likely_words()
+    return frozenset(w for w in words if len(w) > 1)
 
 
 @cache
 def known_words() -> frozenset[str]:
     """Words that need no correction; without the encoder's vocabulary only the domain's."""
     try:
-        return domain_words() | load_encoder().common_words(COMMON_WORDS)
+        return domain_words() | load_encoder().words()
     except EncoderMissingError:
         return domain_words()
 
 
 @cache
-def _by_length() -> dict[int, tuple[str, ...]]:
-    lengths: dict[int, list[str]] = {}
+def _by_length() -> dict[int, tuple[tuple[str, Counter[str]], ...]]:
+    lengths: dict[int, list[tuple[str, Counter[str]]]] = {}
     for word in sorted(domain_words()):
-        lengths.setdefault(len(word), []).append(word)
+        lengths.setdefault(len(word), []).append((word, Counter(word)))
     return {n: tuple(words) for n, words in lengths.items()}
 
 
-def nearest_word(word: str) -> str | None:
-    """The domain word within the forgiven number of slips, None where there is none.
+def _cost(word: str, candidate: str, distance: int) -> float:
+    """How unlikely a slip is: swaps and doubled letters happen, other first letters hardly."""
+    swapped = sorted(word) == sorted(candidate)
+    doubled = re.sub(r"(.)\1", r"\1", word) == re.sub(r"(.)\1", r"\1", candidate)
+    likely = candidate in likely_words()
+    return distance - 0.5 * (swapped or doubled) - 0.4 * likely + 0.6 * (word[0] != candidate[0])
 
-    Of several, the one with the same first letter and the nearest length is taken.
+
+def nearest_word(word: str) -> str | None:
+    """The domain word that a slip most likely meant, None where there is none.
+
+    Long words may have two slips where a likely word is meant; other words have one at most.
     """
     most = 2 if len(word) >= LONG_WORD else 1
-    best: tuple[int, bool, int, str] | None = None
+    letters = Counter(word)
+    best: tuple[float, str] | None = None
     for length in range(len(word) - most, len(word) + most + 1):
-        for candidate in _by_length().get(length, ()):
+        for candidate, others in _by_length().get(length, ()):
+            if sum((letters - others).values()) > most or sum((others - letters).values()) > most:
+                continue
             distance = slip_distance(word, candidate, most)
-            if distance <= most:
-                same_letters = sorted(word) == sorted(candidate)
-                rank = distance - 0.5 * same_letters
-                key = (rank, word[0] != candidate[0], abs(len(word) - length), candidate)
+            far = distance == most == 2 and candidate not in likely_words()
+            if distance <= most and not far:
+                key = (_cost(word, candidate, distance), candidate)
                 best = min(best, key) if best else key
-    return best[-1] if best else None
+    if best is None or best[0] > 1.0 + (most == 2):
+        return None
+    return best[1]
 
 
 def _two_words(word: str) -> str | None:
-    """A verb and a function word typed without the space ("turnthe")."""
+    """A verb and a short word typed without the space ("turnthe")."""
     for cut in range(SHORTEST, len(word) - 1):
         left, right = word[:cut], word[cut:]
-        if left in base_forms() and right in {"the", "it", "this", "that", "a", "my", "up", "down"}:
+        if left in base_forms() and right in FUSED:
             return f"{left} {right}"
     return None
 
 
 def correct(text: str) -> tuple[str, tuple[str, ...]]:
     """Text with slips corrected, and one note for each correction."""
-    notes = []
+    notes: list[str] = []
     words = []
     for piece in text.split():
         core = piece.strip(".,!?;:'-")
-        fixed = None
-        if core.isalpha() and len(core) >= SHORTEST and core not in known_words():
-            fixed = nearest_word(core) or _two_words(core)
-        if fixed:
-            notes.append(f"read {core!r} as {fixed!r}")
-            piece = piece.replace(core, fixed)
+        unknown = core.isascii() and core.isalpha() and core not in known_words()
+        if unknown and len(core) >= SHORTEST and len(notes) < MAX_UNKNOWN:
+            fixed = _two_words(core) or nearest_word(core)
+            if fixed:
+                notes.append(f"read {core!r} as {fixed!r}")
+                piece = piece.replace(core, fixed)
         words.append(piece)
     return " ".join(words), tuple(notes)
+
+
+def respell_name(words: str) -> str | None:
+    """The object name that words miss by one slip in one of them ("power chord"), if any.
+
+    An unfinished word ("draw" for "drawer") counts as a slip.
+    """
+    parts = words.split()
+    for name in load_lexicon().names:
+        others = name.split()
+        if len(others) != len(parts):
+            continue
+        wrong = [(a, b) for a, b in zip(parts, others, strict=True) if a != b]
+        if len(wrong) == 1 and len(wrong[0][0]) > SHORTEST:
+            slip, meant = wrong[0]
+            unfinished = meant.startswith(slip) and len(meant) <= len(slip) + 2
+            if unfinished or (slip[0] == meant[0] and slip_distance(slip, meant, 1) == 1):
+                return name
+    return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from maniskill_taskgrasp.errors import echo
@@ -10,12 +11,13 @@ from maniskill_taskgrasp.language.actions import ActionScores, score_actions
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.guard import TRY, refuse
 from maniskill_taskgrasp.language.instruction import Instruction, Rejected
+from maniskill_taskgrasp.language.lexicon import load_lexicon
 from maniskill_taskgrasp.language.model import load_model
-from maniskill_taskgrasp.language.objects import Held, choose_object
+from maniskill_taskgrasp.language.objects import Held, antecedent, choose_object
 from maniskill_taskgrasp.language.plan import Task, contradiction, make_tasks, tell
 from maniskill_taskgrasp.language.segments import frame, split_requests
 from maniskill_taskgrasp.language.spelling import correct
-from maniskill_taskgrasp.language.text import MAX_SEGMENTS, clean, split_sentences
+from maniskill_taskgrasp.language.text import FILLERS, MAX_SEGMENTS, clean, split_sentences
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc
@@ -55,6 +57,9 @@ def understand(text: str, object_override: str | None = None) -> Instruction | R
     if verb is not None:
         reason = f"{echo(text)} both asks for and forbids {verb!r}: say which of the two"
         return Rejected(text, reason, "contradictory")
+    bare = bare_name(corrected)
+    if bare is not None:
+        return bare_request(text, corrected, bare, notes)
     answers = [answer(task, text, object_override) for task in make_tasks(told)]
     understood = [a for a in answers if isinstance(a, Instruction)]
     if not understood:
@@ -66,12 +71,37 @@ def understand(text: str, object_override: str | None = None) -> Instruction | R
     return finish(understood[0], text, later, notes)
 
 
+def bare_name(cleaned: str) -> str | None:
+    """The object that is all there is in a text but politeness, None for anything more."""
+    words = [w.strip(",.!?") for w in cleaned.split()]
+    kept = [w for w in words if w not in FILLERS | {"the", "a", "an", "my", "that", "this"}]
+    found = load_lexicon().names.get(" ".join(kept), ())
+    return found[0][0] if found else None
+
+
+def bare_request(
+    text: str, cleaned: str, name: str, notes: tuple[str, ...]
+) -> Instruction | Rejected:
+    """A name alone is a transfer when it is said politely, and nothing otherwise."""
+    if "please" not in cleaned.split() and "please" not in cleaned.replace(".", " ").split():
+        reason = f"{echo(text)} names {name!r} but nothing to do with it: try 'hand me the {name}'"
+        return Rejected(text, reason, "no_action")
+    return Instruction(
+        text=text,
+        action=None,
+        action_score=0.0,
+        actions_top3=(),
+        transfer=True,
+        object=name,
+        object_score=1.0,
+        notes=(*notes, TRANSFER_NOTE),
+    )
+
+
 def finish(
     first: Instruction, text: str, rest: tuple[Instruction | Rejected, ...], notes: tuple[str, ...]
 ) -> Instruction:
     """The first task with the later ones and the remarks on the whole text."""
-    from dataclasses import replace
-
     try:
         load_encoder()
     except EncoderMissingError as error:
@@ -104,14 +134,21 @@ def is_meant(scores: ActionScores) -> bool:
     return scores.ranked[0][1] >= MEANING_MINIMUM and scores.no_action <= NO_ACTION_MAXIMUM
 
 
+def referents(task: Task) -> frozenset[str]:
+    """Words for what the clause's pronouns refer to: "the phone is ringing, answer it"."""
+    before = antecedent(task)
+    pronoun = task.told is not None and any(r.pronoun for r in task.told.clause.roles)
+    return frozenset(before.words.split()) if pronoun and before is not None else frozenset()
+
+
 def answer(task: Task, text: str, object_override: str | None) -> Instruction | Rejected:
     """One task's instruction, or why it has none."""
     scores = None
     if task.told is not None:
-        scores = score_actions(task.told.clause)
+        scores = score_actions(task.told.clause, referents(task))
         if not is_meant(scores):
             if task.transfer and task.preparation is not None:
-                return answer(Task(None, task.held, True, task.preparation), text, object_override)
+                return answer(Task(None, task.held, task.preparation), text, object_override)
             reason = f"no action of the data fits {echo(task.told.clause.text)}: {TRY}"
             return Rejected(text, reason, "off_topic")
     action = scores.ranked[0][0] if scores is not None else None

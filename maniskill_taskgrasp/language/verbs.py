@@ -5,58 +5,9 @@ from __future__ import annotations
 from functools import cache
 
 from maniskill_taskgrasp.language.lexicon import NOMINALS, load_lexicon
+from maniskill_taskgrasp.language.words import word_map
 
-IRREGULAR = {
-    "hang": "hung",
-    "drive": "drove driven",
-    "write": "wrote written",
-    "hold": "held",
-    "saw": "sawn",
-    "sweep": "swept",
-    "throw": "threw thrown",
-    "take": "took taken",
-    "tear": "tore torn",
-    "grind": "ground",
-    "wind": "wound",
-    "spin": "spun",
-    "beat": "beaten",
-    "drink": "drank drunk",
-    "eat": "ate eaten",
-    "blow": "blew blown",
-    "draw": "drew drawn",
-    "bring": "brought",
-    "get": "got gotten",
-    "give": "gave given",
-    "wear": "wore worn",
-    "lay": "laid",
-    "build": "built",
-    "bend": "bent",
-    "feed": "fed",
-    "find": "found",
-    "keep": "kept",
-    "leave": "left",
-    "lend": "lent",
-    "make": "made",
-    "ring": "rang rung",
-    "strike": "struck",
-    "stick": "stuck",
-    "swing": "swung",
-    "speak": "spoke spoken",
-    "do": "did done does",
-    "have": "had has",
-    "see": "saw seen",
-    "send": "sent",
-    "slide": "slid",
-    "undo": "undid undone",
-    "withdraw": "withdrew withdrawn",
-    "tie": "tying tied",
-    "lie": "lying",
-    "bite": "bit bitten",
-    "read": "read",
-    "run": "ran",
-    "sew": "sewn",
-    "shake": "shook shaken",
-}
+IRREGULAR = word_map("irregular")
 DOUBLING = frozenset("bdgklmnprt")  # Final consonants that double: "grip" -> "gripping".
 
 
