@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 
-from maniskill_taskgrasp.agents.sawyer_ar10.description import SAWYER_AR10
+from maniskill_taskgrasp.agents.sawyer_ar10.description import HAND_JOINT_NAMES, SAWYER_AR10
 from maniskill_taskgrasp.agents.sawyer_ar10.elbow import Elbow
 from maniskill_taskgrasp.agents.sawyer_ar10.glb import Surface, glb
 from maniskill_taskgrasp.agents.sawyer_ar10.look_ar10 import LOOKS as AR10_LOOKS
@@ -197,3 +197,28 @@ def test_sawyer_is_drawn_in_its_real_size():
         points = visual_points(link) * 1e3
         np.testing.assert_allclose(points.min(axis=0), low, atol=12, err_msg=link)
         np.testing.assert_allclose(points.max(axis=0), high, atol=12, err_msg=link)
+
+
+@pytest.mark.slow
+def test_robot_renders_in_its_colours():
+    """ManiSkill's loader and SAPIEN show the red arm, the white rings and the dark pedestal."""
+    import sapien
+
+    try:
+        sapien.render.get_device_summary()
+    except RuntimeError:
+        pytest.skip("there is no Vulkan device")
+    from maniskill_taskgrasp.agents.sawyer_ar10.studio import PALM_DOWN, Studio, posture
+
+    studio = Studio()
+    studio.pose(posture(PALM_DOWN, [SAWYER_AR10.joint(name).lower for name in HAND_JOINT_NAMES]))
+    view = studio.picture((2.25, -1.95, 0.7), (0.24, 0.0, -0.16), 0.56, (96, 96)).astype(int)
+    red, green, blue = np.moveaxis(view, -1, 0)
+    shares = {
+        "red": np.mean((red > 120) & (green < 70) & (blue < 70)),
+        "dark": np.mean((red < 80) & (green < 80) & (blue < 80)),
+        "blue": np.mean((blue > 50) & (blue > 2 * red)),
+    }
+    assert shares["red"] > 0.03
+    assert shares["dark"] > 0.05
+    assert shares["blue"] > 0.0005
