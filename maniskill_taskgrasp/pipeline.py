@@ -136,9 +136,7 @@ class Pipeline:
     def _rank(self, answer: Instruction, affordance: Affordance) -> Selection:
         from maniskill_taskgrasp.selection import Selector, feasible
 
-        strategy: GraspStrategy = Selector.load().rank(
-            affordance, answer.action, answer.parameters
-        )
+        strategy: GraspStrategy = Selector.load().rank(affordance, answer.action, answer.parameters)
         ranked = []
         for topology in strategy.ranked():
             able, why = feasible(topology, affordance)
@@ -231,6 +229,15 @@ def _policy(name: str) -> tuple[Callable[[Any], Any], dict[str, Any]]:
 
     path = _shipped_policy() if name == "learned" else Path(name)
     return partial(load_policy, path), policy_env_kwargs(path)
+
+
+def _shipped_policy() -> Path:
+    from importlib.resources import files
+
+    path = Path(str(files("maniskill_taskgrasp.assets").joinpath("checkpoints/policy.pt")))
+    if not path.exists():
+        raise InputError("no learned policy is shipped yet; use --policy constant or a checkpoint")
+    return path
 
 
 def _affordance(name: str) -> Affordance:

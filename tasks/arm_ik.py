@@ -7,8 +7,8 @@ from torch import Tensor
 
 from maniskill_taskgrasp.agents.controllers.palm_motion import joint_step
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
-from maniskill_taskgrasp.tasks.geometry import quat_to_matrix, rotation_vector
 from maniskill_taskgrasp.episode import PHASE_STEPS
+from maniskill_taskgrasp.tasks.geometry import quat_to_matrix, rotation_vector
 from maniskill_taskgrasp.tasks.pregrasp import PalmPath
 
 SEED_ITERATIONS = 60

@@ -32,9 +32,9 @@ class Placement:
     quat_wxyz: Array
     """(4,)"""
     centre: Array
-    """(3,) [m] middle of the world-aligned box around the object."""
+    """(3,) [m] on the vertical through the centre of mass, halfway up the object."""
     extents: Array
-    """(3,) [m] that box's size along x, y and z."""
+    """(3,) [m] size of the world-aligned box around the object along x, y and z."""
     fixture_pose: Array
     """(7,) [m, wxyz] of the presentation's frame."""
 
@@ -60,15 +60,16 @@ def place(model: ObjectModel, presentation: str = "auto", rest: int = 0) -> Plac
     position = yaw @ np.asarray(shown.position)
     world = corners @ rotation.T + position
     low, high = world.min(0), world.max(0)
-    # The middle of the box, not the object's origin, stands at the world's origin.
-    shift = np.array([-(low[0] + high[0]) / 2, -(low[1] + high[1]) / 2, 0.0])
+    com = rotation @ model.com + position
+    # A grasp near the centre of mass holds best, so that is what stands at the world's origin.
+    shift = np.array([-com[0], -com[1], 0.0])
     return Placement(
         model=model,
         presentation=shown,
         turn=float(turn),
         position=position + shift,
         quat_wxyz=np.asarray(matrix_to_quat(rotation)),
-        centre=(low + high) / 2 + shift,
+        centre=np.array([0.0, 0.0, (low[2] + high[2]) / 2]),
         extents=high - low,
         fixture_pose=np.concatenate([shift, matrix_to_quat(yaw)]),
     )

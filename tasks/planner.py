@@ -11,6 +11,7 @@ from torch import Tensor
 from maniskill_taskgrasp.agents.hand import HandDescription, Posture
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
 from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, Primitive
+from maniskill_taskgrasp.tasks.grasp_library import nearest_grasps
 from maniskill_taskgrasp.tasks.placement import Placement
 from maniskill_taskgrasp.tasks.pregrasp import palm_rotation
 
@@ -41,9 +42,20 @@ class PregraspPlanner:
         self._actuators = actuator_indices
         self._sweeps: dict[str, Tensor] = {}
 
-    def plan(self, slug: str, placement: Placement) -> Tensor:
-        """(6,) the pregrasp of a topology for a placed object."""
-        return self.bounding_box(slug, placement)
+    def plan(
+        self, slug: str, placement: Placement
+    ) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+        """Pregrasp (6,), preshape and closing (num_actuators,) of a topology for a placed object.
+
+        The stored grasp that suits the object best; where the topology has none, the rule of
+        `bounding_box` with the hand's own posture.
+        """
+        stored = nearest_grasps(slug, placement)
+        if stored:
+            return stored[0].pregrasp, stored[0].preshape, stored[0].closing
+        posture = self._hand.postures[slug]
+        rule = tuple(self.bounding_box(slug, placement).tolist())
+        return rule, posture.preshape, posture.closing
 
     def bounding_box(self, slug: str, placement: Placement) -> Tensor:
         """Pregrasp from the object's box: its centre at the posture's grasp centre, palm raised

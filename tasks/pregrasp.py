@@ -44,7 +44,7 @@ def palm_path(pregrasp: Tensor, obj_centre: Tensor) -> PalmPath:
 
     Args:
         pregrasp: (n, 6) `PREGRASP_FIELDS`.
-        obj_centre: (n, 3) [m] nominal centre of the object's box, world.
+        obj_centre: (n, 3) [m] the object's `Placement.centre`, world.
     """
     rotation = palm_rotation(*pregrasp[:, 3:].unbind(1))
     grasp = obj_centre - (rotation @ pregrasp[:, :3, None])[..., 0]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
-import numpy as np
 import torch
 from torch import Tensor
 
@@ -59,7 +58,7 @@ def roll_out(
     if video is not None and not rendering_available():
         notes.append("no video: no Vulkan device was found (see README, Rendering)")
         video = None
-    env = gym.make(
+    env: Any = gym.make(
         "TaskGrasp-v0",
         objects=[obj],
         topology=topology.name,
@@ -91,28 +90,28 @@ def roll_out(
 
 
 def _episode(
-    env: gym.Env, policy: Callable[[Tensor], Tensor], seed: int, video: Path | None
+    env: Any, policy: Callable[[Tensor], Tensor], seed: int, video: Path | None
 ) -> tuple[float, str, bool]:
     """One episode to its end, and on camera to the end of the clock."""
-    frames: list[np.ndarray] = []
+    frames: list[Any] = []
     obs, info = env.reset(seed=seed, options={"reconfigure": True})
     over = False
     while not over:
         obs, _, terminated, truncated, info = env.step(policy(obs))
         if video is not None:
-            frames.append(env.render()[0].cpu().numpy())  # type: ignore[union-attr, index]
+            frames.append(env.render()[0].cpu().numpy())
         over = bool(torch.logical_or(terminated, truncated))
     if video is not None:
         write_video(video, frames)
-    lift = float(env.unwrapped.outcome.max_lift[0])  # type: ignore[attr-defined]
+    lift = float(env.unwrapped.outcome.max_lift[0])
     return round(lift, 4), FAILURES[int(info["failure"][0])], bool(info["fidelity"][0])
 
 
-def write_video(path: Path, frames: list[np.ndarray]) -> None:
+def write_video(path: Path, frames: Sequence[Any]) -> None:
     """Write frames (h, w, 3) uint8 as an mp4 that plays in real time, whole or not at all."""
     import imageio
 
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(f".{path.name}.partial.mp4")
-    imageio.mimwrite(partial, frames, fps=CONTROL_FREQ, quality=8, macro_block_size=8)
+    imageio.mimwrite(partial, list(frames), fps=CONTROL_FREQ, quality=8, macro_block_size=8)
     partial.replace(path)

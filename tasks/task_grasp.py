@@ -32,7 +32,7 @@ from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
 from maniskill_taskgrasp.tasks.phases import phase_at
 from maniskill_taskgrasp.tasks.placement import Placement, place
 from maniskill_taskgrasp.tasks.planner import PregraspPlanner
-from maniskill_taskgrasp.tasks.pregrasp import palm_path
+from maniskill_taskgrasp.tasks.plans import PlanBook, Plans
 from maniskill_taskgrasp.tasks.sensing import HandBoxes, part_distances, part_forces
 from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
 
@@ -97,11 +97,16 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
 
     **Success Conditions:**
     - the object is at least 0.20 m above its start and has been held by the hand alone for 0.5 s
+
+    `reset` takes, beside ManiSkill's options, "topology" (a name for all environments that reset),
+    "pregrasp" ((n, 6), `PREGRASP_FIELDS`, in place of the planner's) and "postures" (preshapes and
+    closings, each (n, num_actuators) [rad], in place of the hand's own).
     """
 
     SUPPORTED_ROBOTS = ("sawyer_ar10",)
     SUPPORTED_REWARD_MODES = ("normalized_dense", "dense", "sparse", "none", "paper")
     agent: SawyerAR10
+    _reading: Reading | None = None
 
     def __init__(
         self,
@@ -186,25 +191,23 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
     def _prepare_planning(self) -> None:
         agent, device = self.agent, self.device
         kinematics = ArticulationKinematics.of(agent.robot)
-        self._kinematics = kinematics
         self._hand_links = [link for links in agent.part_links.values() for link in links]
         link_names = [link.name for link in self._hand_links]
         self._boxes = HandBoxes.of(agent.part_primitives, link_names, device)
         self._surfaces = ContactSurfaces(agent.hand, link_names, device)
-        self._planner = PregraspPlanner(
+        self.planner = PregraspPlanner(
             agent.hand, agent.part_primitives, kinematics, agent.actuator_indices
         )
         limits = agent.robot.get_qlimits()[0, agent.arm_indices]
         root = Pose.create(scene.ROBOT_POSE, device=device).raw_pose[0]
-        self._ik = ArmIK(kinematics, agent.arm_indices, agent.hand.palm_frame, limits, root)
-        self._plans: dict[tuple[str, int], tuple[Tensor, Tensor]] = {}
+        ik = ArmIK(kinematics, agent.arm_indices, agent.hand.palm_frame, limits, root)
+        self._plan_book = PlanBook(self.planner, ik, device)
         n = self.num_envs
         tensor = lambda rows: torch.tensor(np.stack(rows), dtype=torch.float32, device=device)  # noqa: E731
         self._points = tensor([p.model.surface_points(SURFACE_POINTS) for p in self.placements])
-        self._nominal_pose = tensor(
+        self.nominal_pose = tensor(
             [np.concatenate([p.position, p.quat_wxyz]) for p in self.placements]
         )
-        self._centre = tensor([p.centre for p in self.placements])
         self._extents = tensor([p.extents for p in self.placements])
         self.topology_index = torch.zeros(n, dtype=torch.long, device=device)
         self.pregrasp = torch.zeros(n, 6, device=device)
@@ -224,11 +227,12 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         self.topology_index[env_idx] = torch.tensor(
             [t.index for t in topologies], device=self.device
         )
-        path, reachable = self._plan(env_idx, topologies, options)
-        self._place_robot(env_idx, topologies, path)
+        plans = self._plan(env_idx, topologies, options)
+        self.pregrasp[env_idx] = plans.pregrasp
+        self._place_robot(env_idx, plans)
         self._place_objects(env_idx)
         self._last_action[env_idx] = 0.0
-        self.outcome.reset(env_idx, reachable)
+        self.outcome.reset(env_idx, plans.reachable)
         self._reading = None
 
     def _draw_topologies(self, env_idx: Tensor, options: dict) -> list[Topology]:
@@ -236,44 +240,27 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             return [resolve_topology(options["topology"])] * len(env_idx)
         return [self.topologies[int(env) % len(self.topologies)] for env in env_idx]
 
-    def _plan(
-        self, env_idx: Tensor, topologies: list[Topology], options: dict
-    ) -> tuple[Tensor, Tensor]:
-        """Joint paths (n, steps, 7) and reachability (n,); plans are kept, noise comes later."""
-        if "pregrasp" in options:
-            pregrasps = torch.as_tensor(options["pregrasp"], device=self.device)
-            self.pregrasp[env_idx] = pregrasps
-            return self._ik.path(palm_path(pregrasps, self._centre[env_idx]))
-        missing = [
-            (int(env), t)
-            for env, t in zip(env_idx, topologies, strict=True)
-            if (t.slug, int(env)) not in self._plans
-        ]
-        if missing:
-            wanted = torch.stack(
-                [self._planner.plan(t.slug, self.placements[env]) for env, t in missing]
-            ).to(self.device)
-            rows = torch.tensor([env for env, _ in missing], device=self.device)
-            paths, reachable = self._ik.path(palm_path(wanted, self._centre[rows]))
-            for i, (env, t) in enumerate(missing):
-                self._plans[t.slug, env] = (wanted[i], paths[i], reachable[i])
-        plans = [self._plans[t.slug, int(env)] for env, t in zip(env_idx, topologies, strict=True)]
-        self.pregrasp[env_idx] = torch.stack([p for p, _, _ in plans])
-        return torch.stack([p for _, p, _ in plans]), torch.stack([r for _, _, r in plans])
+    def _plan(self, env_idx: Tensor, topologies: list[Topology], options: dict) -> Plans:
+        if "pregrasp" not in options:
+            return self._plan_book.plans(env_idx, topologies, self.placements)
+        own = [self.agent.hand.postures[t.slug] for t in topologies]
+        shapes = options.get("postures") or (
+            torch.tensor([posture.preshape for posture in own]),
+            torch.tensor([posture.closing for posture in own]),
+        )
+        placements = [self.placements[int(env)] for env in env_idx]
+        return self._plan_book.custom(placements, torch.as_tensor(options["pregrasp"]), *shapes)
 
-    def _place_robot(self, env_idx: Tensor, topologies: list[Topology], path: Tensor) -> None:
-        postures = [self.agent.hand.postures[t.slug] for t in topologies]
-        preshape = torch.tensor([p.preshape for p in postures], device=self.device)
-        closing = torch.tensor([p.closing for p in postures], device=self.device)
-        qpos = self.agent.full_qpos(path[:, 0].cpu().numpy(), preshape.cpu().numpy())
-        self.agent.reset(torch.from_numpy(qpos).to(self.device))
-        self.agent.set_plan(env_idx, path, preshape, closing, LIFT_START)
+    def _place_robot(self, env_idx: Tensor, plans: Plans) -> None:
+        arm, hand = plans.path[:, 0].cpu().numpy(), plans.preshape.cpu().numpy()
+        self.agent.reset(torch.from_numpy(self.agent.full_qpos(arm, hand)).to(self.device))
+        self.agent.set_plan(env_idx, plans.path, plans.preshape, plans.closing, LIFT_START)
 
     def _place_objects(self, env_idx: Tensor) -> None:
         rng = self._batched_episode_rng[env_idx]
         draws = draw_offsets(self._noise, rng.uniform(-1, 1, size=3))
         offsets = torch.tensor(draws, dtype=torch.float32, device=self.device)
-        pose = self._nominal_pose[env_idx].clone()
+        pose = self.nominal_pose[env_idx].clone()
         turn = yaw_quat(offsets[:, 2])
         pose[:, :3] = (quat_to_matrix(turn) @ pose[:, :3, None])[..., 0]
         pose[:, :2] += offsets[:, :2]
@@ -293,10 +280,9 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         action = super()._step_action(action)
         if action is not None:
             self._last_action = action.reshape(self.num_envs, -1).clone()
-        self._reading = self._read()
-        self.outcome.record(
-            self._lift(), self._reading.local_forces, self.obj.linear_velocity.norm(dim=1)
-        )
+        self._reading = reading = self._read()
+        speed = self.obj.linear_velocity.norm(dim=1)
+        self.outcome.record(self._lift(), reading.local_forces, speed)
         return action
 
     def _read(self) -> Reading:

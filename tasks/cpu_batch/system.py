@@ -1,28 +1,25 @@
-"""Shared CPU physics behind the buffers and calls that ManiSkill knows from PhysxGpuSystem."""
+"""The stand-in for PhysxGpuSystem: ManiSkill's fetch and apply calls over groups on the CPU."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import sapien
 import torch
 from sapien import physx
 
-from maniskill_taskgrasp.tasks.cpu_batch.contacts import ContactTable, ImpulseQuery
-from maniskill_taskgrasp.tasks.cpu_batch.layout import Layout, entity_rows
-
-if TYPE_CHECKING:
-    from maniskill_taskgrasp.tasks.cpu_batch.scene import OffsetScene
+from maniskill_taskgrasp.tasks.cpu_batch.arrays import Arrays
+from maniskill_taskgrasp.tasks.cpu_batch.group import EnvGroup
+from maniskill_taskgrasp.tasks.cpu_batch.workers import RemoteGroup
 
 
 class Buffer:
     """An array that code written for `sapien.CudaArray` can read: `.torch()` shares its memory."""
 
     def __init__(self, array: np.ndarray, refresh: Callable[[], None] | None = None):
-        self.array = array
         self._tensor = torch.from_numpy(array)
         self._refresh = refresh
 
@@ -33,25 +30,58 @@ class Buffer:
         return self._tensor
 
 
-class BatchedCpuSystem:
-    """Steps a few shared PhysxCpuSystems; reads and writes all their environments at once.
+class ImpulseQuery:
+    """Impulses that were asked for; `cuda_impulses.torch()` is (asked, 3) [Ns]."""
 
-    Positions are in each environment's own frame: offsets never leave this class. As on the GPU,
-    a fetch copies the simulation into the buffers and an apply copies the buffers back. An apply
-    touches only rows that differ from the last fetch and the environments named by `rewrite`, so
-    that a partial reset leaves the others' trajectories bit-identical.
+    def __init__(self, groups: np.ndarray, rows: np.ndarray, signs: np.ndarray):
+        self._groups, self._rows = groups, rows
+        self._signs = signs[:, None].astype(np.float32)
+        self._impulses = np.zeros((len(rows), 3), dtype=np.float32)
+        self.cuda_impulses = Buffer(self._impulses)
+
+    def fill(self, tables: Sequence[np.ndarray]) -> None:
+        """Take what this query asks for out of the groups' contact tables."""
+        for group, table in enumerate(tables):
+            mine = self._groups == group
+            self._impulses[mine] = table[self._rows[mine]] * self._signs[mine]
+
+
+@dataclass
+class Share:
+    """The rows of the buffers that belong to a group."""
+
+    group: EnvGroup | RemoteGroup
+    local: EnvGroup  # The same group in this process, dead once `group` is remote.
+    envs: range
+    bodies: range
+    articulations: range
+
+
+class BatchedCpuSystem:
+    """Steps all environments; reads and writes them at once.
+
+    As on the GPU, a fetch copies the simulation into the buffers and an apply copies the buffers
+    back. Here an apply touches only rows that differ from the last fetch and the environments
+    that are being rewritten, so that others are not disturbed.
     """
 
     # ManiSkill asks `isinstance(scene.px, PhysxGpuSystem)`, and Python also asks this attribute.
     __class__ = property(lambda _: physx.PhysxGpuSystem)  # type: ignore[assignment]
 
-    def __init__(self, systems: Sequence[physx.PhysxCpuSystem], scenes: Sequence[OffsetScene]):
-        self.systems = list(systems)
+    def __init__(self, scenes: Sequence[sapien.Scene], processes: int = 1):
+        """
+        Args:
+            scenes: one for each environment, with its own PhysX system.
+            processes: how many share the physics, this one included.
+        """
         self.scenes = list(scenes)
+        self.systems: list[physx.PhysxCpuSystem] = [s.physx_system for s in scenes]
         self.ready = False
-        self.rewrite = np.zeros(len(scenes), dtype=bool)
+        self._processes = processes
+        self._pending = 0  # Steps asked for and not yet taken.
+        self._rewriting = np.zeros(len(self.scenes), dtype=bool)
 
-    # Lists and settings of any PhysX system ------------------------------------------------------
+    # Settings of any PhysX system ----------------------------------------------------------------
 
     @property
     def timestep(self) -> float:
@@ -83,12 +113,22 @@ class BatchedCpuSystem:
         """Links of all environments."""
         return [link for system in self.systems for link in system.articulation_link_components]
 
-    def get_scene_offset(self, scene: OffsetScene) -> np.ndarray:
-        """(3,) [m] where a sub-scene lies in its system."""
-        return scene.offset
+    def get_scene_offset(self, scene: sapien.Scene) -> np.ndarray:
+        """(3,) [m] zero: every environment has a world of its own."""
+        return np.zeros(3, dtype=np.float32)
 
     def get_contacts(self) -> list[physx.PhysxContact]:
-        """Contacts of all environments, with positions in their systems' frames."""
+        """Contacts of all environments.
+
+        Raises:
+            RuntimeError: other processes hold some; contact queries work there too.
+        """
+        if any(isinstance(share.group, RemoteGroup) for share in self._shares):
+            raise RuntimeError(
+                "contact lists stay in the process that runs the physics: "
+                "use a contact query or sim_config scene_config cpu_workers=1"
+            )
+        self._refresh()
         return [contact for system in self.systems for contact in system.get_contacts()]
 
     # Life ----------------------------------------------------------------------------------------
@@ -97,157 +137,189 @@ class BatchedCpuSystem:
         """Number all bodies and make the buffers. Nothing may be built afterwards."""
         if self.ready:
             return
-        layout = self.layout = Layout(self.systems, self.scenes)
-        self._flat = np.zeros(layout.packed_size + 1, dtype=np.float32)
-        self._link_place = entity_rows(layout, self.scenes)
-        bodies, joints = (len(layout.bodies), 13), (len(layout.articulations), layout.max_dof)
-        self._body = np.zeros(bodies, dtype=np.float32)
-        self._qpos, self._qvel, self._qacc, self._qf = np.zeros((4, *joints), dtype=np.float32)
-        self._target, self._target_velocity = np.zeros((2, *joints), dtype=np.float32)
-        self._force, self._torque = np.zeros((2, len(layout.bodies), 4), dtype=np.float32)
-        env_of = dict(zip(layout.bodies, layout.body_env.tolist(), strict=True))
-        self._contacts = ContactTable(self.systems, env_of, len(self.scenes))
-        self.cuda_rigid_body_data = Buffer(self._body)
-        self.cuda_rigid_dynamic_data = Buffer(self._body[: layout.num_dynamic])
-        self.moving_link_data = Buffer(self._body, self._fetch_link_velocities)
-        self.cuda_articulation_qpos = Buffer(self._qpos)
-        self.cuda_articulation_qvel = Buffer(self._qvel)
-        self.cuda_articulation_qacc = Buffer(self._qacc, self._fetch_qacc)
-        self.cuda_articulation_qf = Buffer(self._qf)
-        self.cuda_articulation_target_qpos = Buffer(self._target)
-        self.cuda_articulation_target_qvel = Buffer(self._target_velocity)
-        self.cuda_rigid_body_force = Buffer(self._force)
-        self.cuda_rigid_body_torque = Buffer(self._torque)
-        self._bind_setters()
-        self._outdated()
-        self._check_packing()
-        self._target[:] = self._packed()[layout.target_source]
-        self._target_velocity[:] = self._packed()[layout.target_velocity_source]
-        self._target_applied = self._target.copy()
-        self._target_velocity_applied = self._target_velocity.copy()
-        self._fetch()
+        self._shares = self._split()
+        width = int(max((d for s in self._shares for d in s.local.dofs), default=0))
+        last = self._shares[-1]
+        arrays = self._arrays = Arrays.zeros(last.bodies.stop, last.articulations.stop, width)
+        for share in self._shares:
+            share.local.bind(arrays.rows(_slice(share.bodies), _slice(share.articulations)))
+        self._number()
+        self.cuda_rigid_body_data = Buffer(arrays.body)
+        self.moving_link_data = Buffer(arrays.body, self._fetch_moving)
+        self.cuda_articulation_qpos = Buffer(arrays.qpos)
+        self.cuda_articulation_qvel = Buffer(arrays.qvel)
+        self.cuda_articulation_qacc = Buffer(arrays.qacc, self._fetch_moving)
+        self.cuda_articulation_qf = Buffer(arrays.qf)
+        self.cuda_articulation_target_qpos = Buffer(arrays.target)
+        self.cuda_articulation_target_qvel = Buffer(arrays.target_velocity)
+        self.cuda_rigid_body_force = Buffer(arrays.force)
+        self.cuda_rigid_body_torque = Buffer(arrays.torque)
+        arrays.body[:], arrays.qpos[:], arrays.qvel[:] = (
+            arrays.sim_body,
+            arrays.sim_qpos,
+            arrays.sim_qvel,
+        )
+        arrays.target[:] = arrays.sent_target
+        arrays.target_velocity[:] = arrays.sent_target_velocity
+        self._pushed = np.zeros(len(arrays.qf), dtype=bool)
+        self._tables: list[np.ndarray] | None = None
+        self._outdated = self._moving_known = False
+        self._targets_on_their_way = False
         self.ready = True
 
-    def _bind_setters(self) -> None:
-        """Looking a method up costs as much as calling it: keep those of every step bound."""
-        joints = [a.active_joints for a in self.layout.articulations]
-        width = self.layout.max_dof
-        self._set_target = _padded([[j.set_drive_target for j in js] for js in joints], width)
-        self._set_target_velocity = _padded(
-            [[j.set_drive_velocity_target for j in js] for js in joints], width
-        )
+    def _split(self) -> list[Share]:
+        """Groups of about equal size, one for each process."""
+        bounds = np.linspace(0, len(self.scenes), self._processes + 1).round().astype(int)
+        shares, bodies, articulations = [], 0, 0
+        for first, stop in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
+            group = EnvGroup(self.scenes[first:stop])
+            rows = range(bodies, bodies + len(group.bodies))
+            joints = range(articulations, articulations + len(group.articulations))
+            shares.append(Share(group, group, range(first, stop), rows, joints))
+            bodies, articulations = rows.stop, joints.stop
+        return shares
 
-    def _check_packing(self) -> None:
-        """The packed state has no specification, so compare it with what bodies say themselves."""
-        packed, layout = self._packed(), self.layout
-        expected = [_state(body, body.entity.pose) for body in layout.bodies[: layout.num_dynamic]]
-        agrees = np.array_equal(packed[layout.dynamic_source].ravel(), np.ravel(expected))
-        for row, articulation in enumerate(layout.articulations):
-            qpos = packed[layout.qpos_source[row, : articulation.dof]]
-            agrees = agrees and np.array_equal(qpos, articulation.qpos)
-        if not agrees:
-            raise RuntimeError(
-                f"SAPIEN {version('sapien')} packs its state in an unknown order: "
-                "num_envs > 1 on the CPU works with SAPIEN 3.0.3"
-            )
+    def _number(self) -> None:
+        """Global row numbers, from those of the groups."""
+        shares = self._shares
+
+        def joined(name: str, starts: Sequence[int]) -> np.ndarray:
+            parts = [getattr(s.local, name) + at for s, at in zip(shares, starts, strict=True)]
+            return np.concatenate(parts)
+
+        first_env = [s.envs.start for s in shares]
+        first_body = [s.bodies.start for s in shares]
+        self._body_env = joined("body_env", first_env)
+        self._articulation_env = joined("articulation_env", first_env)
+        self._dynamic = joined("dynamic", first_body)
+        self._links = joined("links", first_body)
+        self._root_row = joined("root_row", first_body)
+        self.row_of: dict[int, int] = {}
+        self.articulation_row_of: dict[int, int] = {}
+        # Group and number in the group of every body, statics counting on after the others.
+        self._place: dict[int, tuple[int, int]] = {}
+        for number, share in enumerate(shares):
+            local = share.local
+            for row, body in enumerate(local.bodies + local.statics):
+                self._place[body.entity.global_id] = (number, row)
+                if row < len(local.bodies):
+                    self.row_of[body.entity.global_id] = share.bodies.start + row
+            for row, articulation in enumerate(local.articulations):
+                root = articulation.root.entity.global_id
+                self.articulation_row_of[root] = share.articulations.start + row
+
+    def _spread(self) -> None:
+        """Fork the processes, as late as possible: what is set up until the first step counts."""
+        for share in self._shares[1:]:
+            if share.group is share.local:
+                share.group = RemoteGroup(share.local)
+
+    def close(self) -> None:
+        """End the processes."""
+        for share in self._shares if self.ready else []:
+            if isinstance(share.group, RemoteGroup):
+                share.group.close()
+
+    @property
+    def physics_seconds(self) -> float:
+        """[s] this process has spent inside PhysX's own step, for measuring its share."""
+        return sum(share.local.physics_seconds for share in self._shares)
+
+    # Stepping ------------------------------------------------------------------------------------
 
     def step(self) -> None:
-        """One physics step of every environment."""
-        for system in self.systems:
-            system.step()
-        self._outdated()
-        self._contacts.stepped()
+        """One physics step of every environment, taken when somebody looks or intervenes.
 
-    def begin_rewrite(self, envs: np.ndarray | slice) -> None:
-        """Apply calls now write these environments whole, and their contacts are void."""
-        self.rewrite[envs] = True
-        self._contacts.clear(envs)
+        Together with the other steps of the same control step it costs a third less, see
+        `EnvGroup.advance`.
+        """
+        self._pending += 1
+
+    def _refresh(self) -> None:
+        """Take the pending steps and read the state."""
+        if not (self._pending or self._outdated):
+            return
+        if self._pending:
+            self._spread()
+        # Others first: they work while this process does its own share, which is the first.
+        for share in reversed(self._shares):
+            share.group.post("advance", self._pending)
+        for share in self._shares:
+            share.group.wait()
+        self._pending = 0
+        self._outdated = self._moving_known = self._targets_on_their_way = False
+        self._tables = None
+
+    def begin_rewrite(self, envs: Any) -> None:
+        """Until `end_rewrite`, apply calls write these environments whole; their past is void."""
+        self._refresh()
+        self._rewriting[envs] = True
+        for share in self._shares:
+            inside = np.nonzero(self._rewriting[share.envs.start : share.envs.stop])[0].tolist()
+            if inside:
+                share.group.post("forget", inside)
+        for share in self._shares:
+            share.group.wait()
+        self._tables = None
 
     def end_rewrite(self) -> None:
         """Apply calls write only what differs from the last fetch again."""
-        self.rewrite[:] = False
-
-    def _outdated(self) -> None:
-        self._packed_known = self._velocities_known = self._qacc_known = False
+        self._rewriting[:] = False
 
     # Fetch: simulation to buffers ----------------------------------------------------------------
 
-    def _packed(self) -> np.ndarray:
-        """State of all systems as one row of floats, the last of which is 0."""
-        if not self._packed_known:
-            packed = b"".join([system.pack() for system in self.systems])
-            if len(packed) != 4 * self.layout.packed_size:
-                raise RuntimeError("bodies were added or removed after the scene was set up")
-            self._flat[:-1] = np.frombuffer(packed, dtype=np.float32)
-            self._packed_known = True
-        return self._flat
-
-    def _fetch(self) -> None:
-        self.gpu_fetch_rigid_dynamic_data()
-        self.gpu_fetch_articulation_link_pose()
-        self.gpu_fetch_articulation_qpos()
-        self.gpu_fetch_articulation_qvel()
-
     def gpu_fetch_rigid_dynamic_data(self) -> None:
         """Poses and velocities of the rigid dynamic bodies."""
-        layout = self.layout
-        rows = self._body[: layout.num_dynamic]
-        np.take(self._packed(), layout.dynamic_source, out=rows, mode="clip")
-        rows[:, :3] -= layout.offset[: layout.num_dynamic]
-        self._dynamic_fetched = rows.copy()
+        self._refresh()
+        self._arrays.body[self._dynamic] = self._arrays.sim_body[self._dynamic]
 
     def gpu_fetch_articulation_link_pose(self) -> None:
         """Poses of all links, and the velocities of the roots."""
-        layout = self.layout
-        packed = b"".join([scene.pack_poses() for scene in self.scenes])
-        poses = np.frombuffer(packed, dtype=np.float32).reshape(-1, 7)[self._link_place]
-        links = self._body[layout.num_dynamic :]
-        np.subtract(poses[:, 4:7], layout.offset[layout.num_dynamic :], out=links[:, :3])
-        links[:, 3:7] = poses[:, :4]
-        self._body[layout.root_row, 7:] = self._packed()[layout.root_source[:, 7:]]
-        self._root_fetched = self._body[layout.root_row]
+        self._refresh()
+        self._arrays.body[self._links, :7] = self._arrays.sim_body[self._links, :7]
+        self._arrays.body[self._root_row, 7:] = self._arrays.sim_body[self._root_row, 7:]
 
     def gpu_fetch_articulation_link_velocity(self) -> None:
         """Nothing: `moving_link_data` asks the links one by one when somebody reads it."""
 
-    def _fetch_link_velocities(self) -> None:
-        if not self._velocities_known:
-            for row in range(self.layout.num_dynamic, len(self._body)):
-                link = self.layout.bodies[row]
-                self._body[row, 7:10] = link.linear_velocity
-                self._body[row, 10:13] = link.angular_velocity
-            self._velocities_known = True
-
     def gpu_fetch_articulation_qpos(self) -> None:
         """Joint positions."""
-        np.take(self._packed(), self.layout.qpos_source, out=self._qpos, mode="clip")
-        self._qpos_fetched = self._qpos.copy()
+        self._refresh()
+        self._arrays.qpos[:] = self._arrays.sim_qpos
 
     def gpu_fetch_articulation_qvel(self) -> None:
         """Joint velocities."""
-        np.take(self._packed(), self.layout.qvel_source, out=self._qvel, mode="clip")
-        self._qvel_fetched = self._qvel.copy()
+        self._refresh()
+        self._arrays.qvel[:] = self._arrays.sim_qvel
 
     def gpu_fetch_articulation_qacc(self) -> None:
-        """Nothing: joint accelerations are asked for one by one when somebody reads them."""
+        """Nothing: accelerations are asked for one by one when somebody reads them."""
 
-    def _fetch_qacc(self) -> None:
-        if not self._qacc_known:
-            for row, articulation in enumerate(self.layout.articulations):
-                self._qacc[row, : articulation.dof] = articulation.qacc
-            self._qacc_known = True
+    def _fetch_moving(self) -> None:
+        if self._moving_known:
+            return
+        self._refresh()
+        for share in self._shares:
+            share.group.post("read_moving")
+        for share in self._shares:
+            share.group.wait()
+        self._arrays.body[self._links, 7:] = self._arrays.sim_body[self._links, 7:]
+        self._moving_known = True
 
     def gpu_fetch_articulation_target_qpos(self) -> None:
         """Drive targets as the simulation has them; those not applied are forgotten."""
-        self._target[:] = self._target_applied
+        self._arrays.target[:] = self._arrays.sent_target
 
     def gpu_fetch_articulation_target_qvel(self) -> None:
         """Drive velocity targets as the simulation has them."""
-        self._target_velocity[:] = self._target_velocity_applied
+        self._arrays.target_velocity[:] = self._arrays.sent_target_velocity
 
     def gpu_fetch_articulation_link_incoming_joint_forces(self) -> None:
-        """Spatial force on each link by its joint, into a (articulations, max links, 6) buffer."""
-        forces = [a.get_link_incoming_joint_forces() for a in self.layout.articulations]
+        """Spatial force on each link by its joint, into (articulations, max links, 6)."""
+        self._refresh()
+        for share in self._shares:
+            share.group.post("link_incoming_joint_forces")
+        forces = [force for share in self._shares for force in share.group.wait()]
         padded = np.zeros((len(forces), max(map(len, forces)), 6), dtype=np.float32)
         for row, force in zip(padded, forces, strict=True):
             row[: len(force)] = force
@@ -255,96 +327,94 @@ class BatchedCpuSystem:
 
     # Apply: buffers to simulation ----------------------------------------------------------------
 
-    def _changed(self, wanted: np.ndarray, known: np.ndarray, env: np.ndarray) -> list[int]:
-        """Rows that were written to, or whose environment is being rewritten."""
-        return np.nonzero((wanted != known).any(axis=1) | self.rewrite[env])[0].tolist()
+    def _write(self, name: str, changed: np.ndarray, env: np.ndarray, of_bodies: bool) -> None:
+        """Have rows written that changed or whose environment is being rewritten."""
+        self._refresh()
+        rows = np.nonzero(changed | self._rewriting[env])[0]
+        if of_bodies:
+            rows = self._dynamic[rows]
+        for share in self._shares:
+            own = share.bodies if of_bodies else share.articulations
+            inside = rows[(rows >= own.start) & (rows < own.stop)] - own.start
+            if len(inside):
+                share.group.post(name, inside.tolist())
+                self._outdated = True
+        for share in self._shares:
+            share.group.wait()
 
     def gpu_apply_rigid_dynamic_data(self) -> None:
         """Poses and velocities of rigid dynamic bodies."""
-        layout = self.layout
-        dynamic = self._body[: layout.num_dynamic]
-        env = layout.body_env[: layout.num_dynamic]
-        for row in self._changed(dynamic, self._dynamic_fetched, env):
-            body, state = layout.bodies[row], dynamic[row]
-            body.entity.set_pose(sapien.Pose(state[:3] + layout.offset[row], state[3:7]))
-            if not body.kinematic:
-                body.set_linear_velocity(state[7:10])
-                body.set_angular_velocity(state[10:13])
-        self._dynamic_fetched = dynamic.copy()
-        self._outdated()
+        rows = self._dynamic
+        changed = (self._arrays.body[rows] != self._arrays.sim_body[rows]).any(axis=1)
+        self._write("write_dynamic", changed, self._body_env[rows], of_bodies=True)
 
     def gpu_apply_articulation_root_pose(self) -> None:
         """Poses of root links."""
-        layout = self.layout
-        wanted = self._body[layout.root_row]
-        known = self._root_fetched
-        for row in self._changed(wanted[:, :7], known[:, :7], layout.articulation_env):
-            position = wanted[row, :3] + layout.offset[layout.root_row[row]]
-            layout.articulations[row].set_root_pose(sapien.Pose(position, wanted[row, 3:7]))
-        known[:, :7] = wanted[:, :7]
-        self._outdated()
+        rows = self._root_row
+        changed = (self._arrays.body[rows, :7] != self._arrays.sim_body[rows, :7]).any(axis=1)
+        self._write("write_root_pose", changed, self._articulation_env, of_bodies=False)
 
     def gpu_apply_articulation_root_velocity(self) -> None:
         """Velocities of root links that can move."""
-        layout = self.layout
-        wanted = self._body[layout.root_row]
-        known = self._root_fetched
-        for row in self._changed(wanted[:, 7:], known[:, 7:], layout.articulation_env):
-            articulation = layout.articulations[row]
-            if articulation.root.joint.type != "fixed":
-                articulation.set_root_linear_velocity(wanted[row, 7:10])
-                articulation.set_root_angular_velocity(wanted[row, 10:13])
-        known[:, 7:] = wanted[:, 7:]
-        self._outdated()
+        rows = self._root_row
+        changed = (self._arrays.body[rows, 7:] != self._arrays.sim_body[rows, 7:]).any(axis=1)
+        self._write("write_root_velocity", changed, self._articulation_env, of_bodies=False)
 
     def gpu_apply_articulation_qpos(self) -> None:
         """Joint positions."""
-        layout = self.layout
-        for row in self._changed(self._qpos, self._qpos_fetched, layout.articulation_env):
-            layout.articulations[row].set_qpos(self._qpos[row, : layout.dof[row]])
-        self._qpos_fetched = self._qpos.copy()
-        self._outdated()
+        changed = (self._arrays.qpos != self._arrays.sim_qpos).any(axis=1)
+        self._write("write_qpos", changed, self._articulation_env, of_bodies=False)
 
     def gpu_apply_articulation_qvel(self) -> None:
         """Joint velocities."""
-        layout = self.layout
-        for row in self._changed(self._qvel, self._qvel_fetched, layout.articulation_env):
-            layout.articulations[row].set_qvel(self._qvel[row, : layout.dof[row]])
-        self._qvel_fetched = self._qvel.copy()
-        self._outdated()
+        changed = (self._arrays.qvel != self._arrays.sim_qvel).any(axis=1)
+        self._write("write_qvel", changed, self._articulation_env, of_bodies=False)
 
     def gpu_apply_articulation_qf(self) -> None:
-        """Joint forces, where any was asked for since they were last 0."""
-        layout = self.layout
-        pushed = getattr(self, "_pushed", np.zeros(len(self._qf), dtype=bool))
-        asked = self._qf.any(axis=1)
-        for row in np.nonzero(asked | pushed)[0]:
-            layout.articulations[row].set_qf(self._qf[row, : layout.dof[row]])
+        """Joint forces, where there is any or was at the last call."""
+        asked = self._arrays.qf.any(axis=1)
+        self._write("write_qf", asked | self._pushed, self._articulation_env, of_bodies=False)
         self._pushed = asked
 
     def gpu_apply_articulation_target_position(self) -> None:
         """Drive targets."""
-        _send(self._target, self._target_applied, self._set_target)
+        self._send_targets(self._arrays.target, self._arrays.sent_target)
 
     def gpu_apply_articulation_target_velocity(self) -> None:
         """Drive velocity targets."""
-        _send(self._target_velocity, self._target_velocity_applied, self._set_target_velocity)
+        self._send_targets(self._arrays.target_velocity, self._arrays.sent_target_velocity)
+
+    def _send_targets(self, wanted: np.ndarray, sent: np.ndarray) -> None:
+        if self._pending:
+            self._refresh()  # The steps asked for so far go with the old targets.
+        if self._targets_on_their_way:
+            for share in self._shares:
+                share.group.wait()  # Another process may still be reading the last ones.
+        sent[:] = wanted
+        for share in reversed(self._shares):
+            share.group.post("write_targets")
+        self._targets_on_their_way = True
 
     def gpu_apply_rigid_dynamic_force(self) -> None:
-        """Forces [N] at the centres of mass for one step, then none."""
-        self._push(self._force, torque=False)
+        """Forces [N] at the centres of mass for one step."""
+        self._push(self._arrays.force, self._arrays.torque)
 
     def gpu_apply_rigid_dynamic_torque(self) -> None:
-        """Torques [Nm] for one step, then none."""
-        self._push(self._torque, torque=True)
+        """Torques [Nm] for one step."""
+        self._push(self._arrays.torque, self._arrays.force)
 
-    def _push(self, wanted: np.ndarray, torque: bool) -> None:
-        none = np.zeros(3, dtype=np.float32)
-        for row in np.nonzero(wanted.any(axis=1))[0]:
-            push = wanted[row, :3]
-            force, moment = (none, push) if torque else (push, none)
-            self.layout.bodies[row].add_force_torque(force, moment)
+    def _push(self, wanted: np.ndarray, other: np.ndarray) -> None:
+        """Apply one of force and torque; both are spent with the step, so the buffer is cleared."""
+        kept = other.copy()
+        other[:] = 0
+        self._refresh()
+        for share in self._shares:
+            rows = wanted[share.bodies.start : share.bodies.stop].any(axis=1)
+            share.group.post("write_force", np.nonzero(rows)[0].tolist())
+        for share in self._shares:
+            share.group.wait()
         wanted[:] = 0
+        other[:] = kept
 
     def gpu_update_articulation_kinematics(self) -> None:
         """Nothing: SAPIEN moves the links when it is given joint positions or a root pose."""
@@ -356,39 +426,44 @@ class BatchedCpuSystem:
 
     def gpu_create_contact_pair_impulse_query(self, pairs: Sequence[tuple]) -> ImpulseQuery:
         """Query for the impulse on the first body of each pair by the second."""
-        return self._contacts.pair_query(pairs)
+        places = [(self._place_of(a), self._place_of(b)) for a, b in pairs]
+        groups = [first[0] for first, _ in places]
+        return self._query("add_pairs", groups, [(a[1], b[1]) for a, b in places])
 
     def gpu_create_contact_body_impulse_query(self, bodies: Sequence[Any]) -> ImpulseQuery:
         """Query for the net impulse on each body."""
-        return self._contacts.body_query(bodies)
+        places = [self._place_of(body) for body in bodies]
+        return self._query("add_bodies", [p[0] for p in places], [p[1] for p in places])
+
+    def _place_of(self, body: Any) -> tuple[int, int]:
+        return self._place[body.entity.global_id]
+
+    def _query(self, name: str, groups: list[int], what: list) -> ImpulseQuery:
+        of_group, rows_signs = np.array(groups), np.zeros((len(what), 2), dtype=int)
+        for number, share in enumerate(self._shares):
+            mine = np.nonzero(of_group == number)[0]
+            if len(mine):
+                share.group.post(name, [what[i] for i in mine])
+                rows_signs[mine] = share.group.wait()
+        self._tables = None
+        return ImpulseQuery(of_group, rows_signs[:, 0], rows_signs[:, 1])
+
+    def _fill(self, query: ImpulseQuery) -> None:
+        self._refresh()
+        if self._tables is None:
+            for share in reversed(self._shares):
+                share.group.post("contact_table")
+            self._tables = [share.group.wait() for share in self._shares]
+        query.fill(self._tables)
 
     def gpu_query_contact_pair_impulses(self, query: ImpulseQuery) -> None:
-        """Bring a pair query up to date."""
-        self._contacts.query(query)
+        """Bring a pair query up to date with the last step."""
+        self._fill(query)
 
     def gpu_query_contact_body_impulses(self, query: ImpulseQuery) -> None:
-        """Bring a body query up to date."""
-        self._contacts.query(query)
+        """Bring a body query up to date with the last step."""
+        self._fill(query)
 
 
-def _state(body: Any, pose: sapien.Pose) -> np.ndarray:
-    return np.concatenate([pose.p, pose.q, body.linear_velocity, body.angular_velocity])
-
-
-def _padded(setters: list[list[Callable]], width: int) -> list[Callable | None]:
-    """One flat list, `width` entries for each articulation."""
-    return [s for row in setters for s in [*row, *[None] * (width - len(row))]]
-
-
-def _send(wanted: np.ndarray, applied: np.ndarray, setters: list) -> None:
-    """Call the setter of every entry that changed, and of one entry in rows where none did.
-
-    Setting a target wakes an articulation. ManiSkill's own CPU path sets all of them each step,
-    so a robot that is told to stay must not fall asleep here either.
-    """
-    changed = wanted != applied
-    changed[~changed.any(axis=1), :1] = True
-    which = np.flatnonzero(changed)
-    for entry, value in zip(which.tolist(), wanted.ravel()[which].tolist(), strict=True):
-        setters[entry](value)
-    applied[:] = wanted
+def _slice(rows: range) -> slice:
+    return slice(rows.start, rows.stop)

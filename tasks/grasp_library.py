@@ -1,0 +1,81 @@
+"""Searched grasps: where the palm went and how the hand closed, and the nearest for a new object.
+
+`assets/pregrasps.json` is written by `python train/pregrasps.py` from train objects alone.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from functools import cache
+from importlib.resources import files
+
+import numpy as np
+
+from maniskill_taskgrasp.tasks.placement import Placement
+
+LIBRARY_FILE = "pregrasps.json"
+FORM_WEIGHT = 0.7  # Of a stored grasp's worth; the rest is the plain lift.
+WORTH = 0.7  # Size mismatch (log ratio) that one whole unit of worth makes up for.
+OTHER_PRESENTATION = 0.5  # Size mismatch that counts for a grasp found in another presentation.
+
+
+@dataclass(frozen=True)
+class Grasp:
+    """A palm pose and a posture that worked on a train object."""
+
+    topology: str
+    """Slug."""
+    obj: str
+    presentation: str
+    extents: tuple[float, float, float]
+    """[m] world-aligned box of the placed object."""
+    height: float
+    """[m] of the object's centre above the table."""
+    pregrasp: tuple[float, ...]
+    """(6,) `pregrasp.PREGRASP_FIELDS`."""
+    preshape: tuple[float, ...]
+    """(num_actuators,) [rad]"""
+    closing: tuple[float, ...]
+    """(num_actuators,) [rad]"""
+    lift: float
+    """Share of fresh trials that lifted the object."""
+    both: float
+    """Share of fresh trials that lifted it in the named topology."""
+    trials: int
+
+    def mismatch(self, placement: Placement) -> float:
+        """How little this grasp suits another object: log size ratios, less the grasp's worth."""
+        own, other = np.asarray(self.extents), placement.extents
+        # Across the fingers (x) and in height size decides; along the object (y) hardly.
+        ratios = np.abs(np.log(other / own)) * np.array([1.0, 0.25, 0.7])
+        height = abs(placement.centre[2] - self.height) / 0.05
+        stand = OTHER_PRESENTATION * (placement.presentation.kind != self.presentation)
+        worth = FORM_WEIGHT * self.both + (1 - FORM_WEIGHT) * self.lift
+        return float(ratios.sum() + 0.5 * height + stand - WORTH * worth)
+
+
+def nearest_grasps(topology: str, placement: Placement, count: int = 1) -> list[Grasp]:
+    """Stored grasps of a topology that suit the placed object best, best first; may be empty."""
+    own = [grasp for grasp in stored_grasps() if grasp.topology == topology]
+    return sorted(own, key=lambda grasp: grasp.mismatch(placement))[:count]
+
+
+@cache
+def stored_grasps() -> tuple[Grasp, ...]:
+    """All searched grasps that are shipped."""
+    file = files("maniskill_taskgrasp.assets").joinpath(LIBRARY_FILE)
+    if not file.is_file():
+        return ()
+    rows = json.loads(file.read_text("utf-8"))
+    return tuple(Grasp(**{k: _frozen(v) for k, v in row.items()}) for row in rows)
+
+
+def dump_grasps(grasps: list[Grasp]) -> str:
+    """The library as JSON, one grasp a line, sorted so that it diffs well."""
+    rows = sorted(grasps, key=lambda grasp: (grasp.topology, grasp.obj, grasp.presentation))
+    return "[\n" + ",\n".join(json.dumps(asdict(row)) for row in rows) + "\n]\n"
+
+
+def _frozen(value: object) -> object:
+    return tuple(value) if isinstance(value, list) else value

@@ -1,0 +1,168 @@
+"""Search grasps on train objects and store them in assets/pregrasps.json; resumes where it was.
+
+python train/pregrasps.py --per-topology 6
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import tyro
+from numpy.typing import NDArray
+
+from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
+from maniskill_taskgrasp.assets.objects import library
+from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.selection.feasibility import feasible
+from maniskill_taskgrasp.tasks.cross_entropy import SearchSpace, cross_entropy
+from maniskill_taskgrasp.tasks.grasp_library import Grasp, dump_grasps
+from maniskill_taskgrasp.tasks.placement import place
+from maniskill_taskgrasp.tasks.pose_search import (
+    POSTURE_FLOOR,
+    POSTURE_SPREAD,
+    PREGRASP_FLOOR,
+    PREGRASP_LOWER,
+    PREGRASP_SPREAD,
+    PREGRASP_UPPER,
+    GraspTrials,
+    PostureSpace,
+)
+from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
+
+Array = NDArray[np.float64]
+ASSETS = Path(__file__).resolve().parent.parent / "assets"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PregraspConfig:
+    """Search grasps on train objects."""
+
+    topologies: tuple[str, ...] = ()
+    """Which topologies; all where it is left out."""
+    objects: tuple[str, ...] = ()
+    """Which train objects; left out, the most different ones that suit the topology."""
+    per_topology: int = 6
+    """How many objects a topology, where they are not named."""
+    presentation: str = "auto"
+    num_envs: int = 64
+    """Candidates a generation."""
+    generations: int = 9
+    final: int = 2
+    """Generations of them that run to the end of the clock."""
+    noise: str = "paper"
+    seed: int = 0
+    out: Path = ASSETS / "pregrasps.json"
+    """Library to add to."""
+
+    def __post_init__(self) -> None:
+        test = set(library.names("test"))
+        for name in self.objects:
+            if name in test:
+                raise InputError(f"{name!r} is a test object; grasps are searched on train objects")
+
+
+def spread_out(names: list[str], count: int) -> list[str]:
+    """The `count` objects whose placed sizes differ most: farthest-point order from the median."""
+    features = np.log([place(library.load(name)).extents for name in names])
+    chosen = [int(np.argmin(np.linalg.norm(features - np.median(features, 0), axis=1)))]
+    while len(chosen) < min(count, len(names)):
+        gaps = np.linalg.norm(features[:, None] - features[chosen][None], axis=-1).min(1)
+        chosen.append(int(gaps.argmax()))
+    return [names[i] for i in chosen]
+
+
+def pairs(config: PregraspConfig) -> Iterator[tuple[Topology, str]]:
+    """Topology and object of each search, round robin, so that an early stop is fair."""
+    wanted = [resolve_topology(name) for name in config.topologies] or list(TOPOLOGIES)
+    lists = []
+    for topology in wanted:
+        names = list(config.objects)
+        if not names:
+            suits = [
+                name
+                for name in library.names("train")
+                if feasible(topology, library.load(name).affordance)[0]
+            ]
+            names = spread_out(suits, config.per_topology) if suits else []
+        lists.append([(topology, name) for name in names])
+    for row in itertools.zip_longest(*lists):
+        yield from (pair for pair in row if pair is not None)
+
+
+def search(topology: Topology, obj: str, config: PregraspConfig) -> Grasp:
+    """Search one pair; the figures stored are of fresh trials."""
+    trials = GraspTrials(obj, topology, config.presentation, config.noise, config.num_envs)
+    placement = trials.env.placements[0]
+    posture = PostureSpace.of(AR10, topology)
+    space = SearchSpace(
+        lower=np.concatenate([PREGRASP_LOWER, posture.lower]),
+        upper=np.concatenate([PREGRASP_UPPER, posture.upper]),
+        spread=np.concatenate([PREGRASP_SPREAD, POSTURE_SPREAD]),
+        floor=np.concatenate([PREGRASP_FLOOR, POSTURE_FLOOR]),
+    )
+    rule = trials.env.planner.bounding_box(topology.slug, placement).numpy()
+    start = np.concatenate([rule, posture.start()])
+    generation = itertools.count()
+
+    def score(candidates: Array) -> Array:
+        number = next(generation)
+        whole = number >= config.generations - config.final
+        shapes = posture.expand(candidates[:, 6:])
+        seed = config.seed + 1000 * (number + 1)
+        return trials.run(candidates[:, :6], *shapes, seed, whole=whole)[2]
+
+    best, _ = cross_entropy(
+        score,
+        start,
+        space,
+        np.random.default_rng(config.seed),
+        population=config.num_envs,
+        generations=config.generations,
+    )
+    preshape, closing = posture.expand(np.tile(best[6:], (config.num_envs, 1)))
+    lifted, both, _ = trials.run(
+        np.tile(best[:6], (config.num_envs, 1)), preshape, closing, config.seed, whole=True
+    )
+    trials.close()
+    return Grasp(
+        topology=topology.slug,
+        obj=obj,
+        presentation=placement.presentation.kind,
+        extents=tuple(np.round(placement.extents, 5).tolist()),
+        height=round(float(placement.centre[2]), 5),
+        pregrasp=tuple(np.round(best[:6], 5).tolist()),
+        preshape=tuple(np.round(preshape[0], 4).tolist()),
+        closing=tuple(np.round(closing[0], 4).tolist()),
+        lift=round(float(lifted.mean()), 4),
+        both=round(float(both.mean()), 4),
+        trials=config.num_envs,
+    )
+
+
+def main(config: PregraspConfig) -> None:
+    done: list[Grasp] = []
+    if config.out.exists():
+        done = [Grasp(**row) for row in json.loads(config.out.read_text("utf-8"))]
+    have = {(grasp.topology, grasp.obj) for grasp in done}
+    for topology, obj in pairs(config):
+        if (topology.slug, obj) in have:
+            continue
+        grasp = search(topology, obj, config)
+        print(
+            f"{topology.name:24s} {obj:28s} {grasp.presentation:6s} "
+            f"lift {grasp.lift:.2f} both {grasp.both:.2f}",
+            flush=True,
+        )
+        done.append(grasp)
+        partial = config.out.with_suffix(".partial")
+        partial.write_text(dump_grasps(done), "utf-8")
+        partial.replace(config.out)
+
+
+if __name__ == "__main__":
+    main(tyro.cli(PregraspConfig))
