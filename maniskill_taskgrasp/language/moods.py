@@ -22,6 +22,7 @@ SELF = word_set("self")
 ADDRESSEE = word_set("addressee")
 SUBJECTS = word_set("subjects")
 CHAIN = word_set("chain")
+LONGEST_CHAIN = 6  # Steps up the tree; deeper nesting is no instruction.
 SAYING = frozenset(["say", "tell", "mean"])
 UNASKED_MARKS = word_set("unasked_marks")
 """Conjunctions whose clause is told, not asked: "till it shines"."""
@@ -38,8 +39,13 @@ def carriers_of(verb: Token) -> list[Token]:
     """Verbs above this one that carry it: "I would like you to wipe" -> would, like."""
     chain: list[Token] = []
     token = verb
-    while token.dep_ in CHAIN and token.head is not token and len(chain) < 6:
+    for _ in range(LONGEST_CHAIN):
+        if token.dep_ not in CHAIN or token.head is token:
+            break
         head = token.head
+        if token.dep_ == "acl" and head.dep_ == "dobj":
+            token = head  # "I have a splinter to remove": carried by "have".
+            continue
         if head.pos_ not in {"VERB", "AUX"}:
             break
         if token.dep_ == "conj" and head.lemma_ not in CARRIERS:
@@ -53,7 +59,7 @@ def carriers_of(verb: Token) -> list[Token]:
 def subject_of(verb: Token) -> Token | None:
     """The verb's own subject, or that of the verb it is joined to or carried by."""
     token = verb
-    for _ in range(6):
+    for _ in range(LONGEST_CHAIN):
         for child in token.children:
             if child.dep_ in SUBJECTS and child.i < token.i:
                 return child

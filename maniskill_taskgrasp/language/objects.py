@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from maniskill_taskgrasp.language.plan import Task
     from maniskill_taskgrasp.language.roles import Role
 
-NEAREST_MINIMUM = 0.62  # Cosine below which a name is not the object that was meant.
+NEAREST_MINIMUM = 0.66  # Cosine below which a name is not the object that was meant.
 SLIP_SCORE = 0.8  # What one slip leaves of a name's certainty.
 CANDIDATES = 5  # Alternatives that an answer lists.
 CONTENT_ACTIONS = word_set("content_actions")
@@ -57,6 +57,8 @@ class Held:
     note: str | None = None
     wanted: str | None = None
     """Words that name something which the data do not have."""
+    guessed: bool = False
+    """No words named it: it comes from the data or is the nearest in meaning."""
 
 
 def used_for(action: str) -> tuple[tuple[str, float], ...]:
@@ -74,6 +76,11 @@ def used_for(action: str) -> tuple[tuple[str, float], ...]:
     return tuple((name, count / total) for name, count in ranked)
 
 
+def _only_describes(text: str, name: str) -> bool:
+    """Whether a name has the text only before its noun: a "nail" is no "nail hammer"."""
+    return name.startswith(f"{text} ") or f" {text} " in name
+
+
 def nearest(text: str) -> tuple[tuple[str, float], ...]:
     """Objects by cosine of their names' vectors with a text, best first.
 
@@ -84,6 +91,8 @@ def nearest(text: str) -> tuple[tuple[str, float], ...]:
     cosines = head.name_vectors @ load_encoder().encode([text])[0]
     best: dict[str, float] = {}
     for i in np.argsort(-cosines)[: 4 * CANDIDATES]:
+        if _only_describes(text, head.names[i]):
+            continue
         for name, certainty in load_lexicon().names[head.names[i]]:
             best.setdefault(name, float(cosines[i]) * certainty)
     return tuple(sorted(best.items(), key=lambda item: -item[1])[:CANDIDATES])
@@ -94,7 +103,8 @@ def from_mention(mention: Mention) -> Held:
     (name, score), *others = mention.objects
     last = mention.words.split()[-1]
     family = [(o, 0.5) for o in load_knowledge().objects if last in o.split() and o != name]
-    return Held(name, score, tuple([*others, *family][:CANDIDATES]))
+    note = f"took {mention.words!r} as {name!r}" if score < 1 else None
+    return Held(name, score, tuple([*others, *family][:CANDIDATES]), note)
 
 
 def from_words(words: str) -> Held:
@@ -111,7 +121,7 @@ def from_words(words: str) -> Held:
     if score < NEAREST_MINIMUM:
         return Held(None, score, ranked, wanted=words)
     note = f"no object is called {words!r}: took the nearest, {name!r}"
-    return Held(name, score, ranked[1:], note)
+    return Held(name, score, ranked[1:], note, guessed=True)
 
 
 def from_data(action: str, besides: tuple[tuple[str, float], ...] = ()) -> Held:
@@ -119,7 +129,7 @@ def from_data(action: str, besides: tuple[tuple[str, float], ...] = ()) -> Held:
     ranked = used_for(action)
     name, share = ranked[0]
     note = f"no object was named for {action}: took {name!r}, which people used most often for it"
-    return Held(name, share, (*ranked[1:CANDIDATES], *besides), note)
+    return Held(name, share, (*ranked[1:CANDIDATES], *besides), note, guessed=True)
 
 
 def antecedent(task: Task) -> Mention | None:
@@ -172,7 +182,8 @@ def _instrument(task: Task, clause: Clause, action: str) -> Held | None:
     tool = clause.role("instrument")
     if tool is not None:
         held = _from_role(tool, task)
-        if held is not None and (held.name is not None or clause.role("target") is None):
+        guessed = tool.mention is None and not tool.pronoun and action not in TOOL_ACTIONS
+        if held is not None and held.name is not None and not (guessed and clause.role("target")):
             return held
     place = clause.role("place")
     if place is not None and place.mention is not None:

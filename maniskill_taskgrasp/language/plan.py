@@ -116,7 +116,10 @@ def _names_something(clause: Clause) -> bool:
 
 def held_role(clause: Clause) -> Role | None:
     """What a transfer or "use" clause names; None for "something"."""
-    return None if _names_something(clause) else clause.role("target") or clause.role("instrument")
+    if _names_something(clause):
+        return None
+    role = clause.role("target") or clause.role("instrument")
+    return role or (clause.role("place") if clause.transfer else None)
 
 
 def _is_asked(told: Told) -> bool:

@@ -9,11 +9,13 @@ from functools import cache
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.guard import ENGLISH_WORDS
-from maniskill_taskgrasp.language.lexicon import load_lexicon
+from maniskill_taskgrasp.language.lexicon import TRANSFER_VERBS, load_lexicon
 from maniskill_taskgrasp.language.verbs import base_forms
 from maniskill_taskgrasp.language.words import word_set
 
-LONG_WORD = 6  # From this length on two slips are forgiven, before it one.
+LONG_WORD = 8  # From this length on two slips are forgiven, before it one.
+MEDIUM_WORD = 6  # Shorter words are corrected to likely words only.
+LIKELY_SLIP = 0.65  # Cost (`_cost`) of one slip in a likely word, or of a swap in any.
 SHORTEST = 3  # Shorter words are left as they are.
 MAX_UNKNOWN = 6  # More unknown words than this are no slips; it also bounds the time.
 EXTRA_WORDS = word_set("extra_words")
@@ -50,7 +52,7 @@ def likely_words() -> frozenset[str]:
     """Words that a slip most likely meant: names of objects, typical verbs, function words."""
     names = {p for name in load_knowledge().objects for p in re.split(r"[^a-z]+", name.lower())}
     first = {p.verb for phrases in load_lexicon().phrases.values() for p in phrases if p.rank < 5}
-    return frozenset(names | first | ENGLISH_WORDS | EXTRA_WORDS)
+    return frozenset(names | first | TRANSFER_VERBS | ENGLISH_WORDS | EXTRA_WORDS)
 
 
 @cache
@@ -104,9 +106,8 @@ def nearest_word(word: str) -> str | None:
             if distance <= most and not far:
                 key = (_cost(word, candidate, distance), candidate)
                 best = min(best, key) if best else key
-    if best is None or best[0] > 1.0 + (most == 2):
-        return None
-    return best[1]
+    limit = most if len(word) >= MEDIUM_WORD else LIKELY_SLIP
+    return best[1] if best is not None and best[0] <= limit else None
 
 
 def _two_words(word: str) -> str | None:
@@ -134,10 +135,21 @@ def correct(text: str) -> tuple[str, tuple[str, ...]]:
     return " ".join(words), tuple(notes)
 
 
+def correct_verb(text: str, position: int) -> tuple[str, tuple[str, ...]]:
+    """Text whose word at a position, though English, is read as the verb it misses by one slip."""
+    words = text.split()
+    core = words[position].strip(".,!?;:'-")
+    fixed = nearest_word(core) if len(core) > SHORTEST else None
+    if fixed is None or fixed not in load_lexicon().verbs or fixed not in likely_words():
+        return text, ()
+    words[position] = words[position].replace(core, fixed)
+    return " ".join(words), (f"read {core!r} as {fixed!r}",)
+
+
 def respell_name(words: str) -> str | None:
     """The object name that words miss by one slip in one of them ("power chord"), if any.
 
-    An unfinished word ("draw" for "drawer") counts as a slip.
+    A single word must be no common noun, or an unfinished name ("draw" for "drawer").
     """
     parts = words.split()
     for name in load_lexicon().names:
@@ -148,6 +160,8 @@ def respell_name(words: str) -> str | None:
         if len(wrong) == 1 and len(wrong[0][0]) > SHORTEST:
             slip, meant = wrong[0]
             unfinished = meant.startswith(slip) and len(meant) <= len(slip) + 2
-            if unfinished or (slip[0] == meant[0] and slip_distance(slip, meant, 1) == 1):
+            near = slip[0] == meant[0] and slip_distance(slip, meant, 1) == 1
+            common = len(parts) == 1 and slip in known_words() and slip not in base_forms()
+            if (unfinished or near) and not common:
                 return name
     return None

@@ -11,12 +11,12 @@ from maniskill_taskgrasp.language.actions import ActionScores, score_actions
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.guard import TRY, refuse
 from maniskill_taskgrasp.language.instruction import Instruction, Rejected
-from maniskill_taskgrasp.language.lexicon import load_lexicon
+from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, load_lexicon
 from maniskill_taskgrasp.language.model import load_model
 from maniskill_taskgrasp.language.objects import Held, antecedent, choose_object
 from maniskill_taskgrasp.language.plan import Task, contradiction, make_tasks, tell
 from maniskill_taskgrasp.language.segments import frame, split_requests
-from maniskill_taskgrasp.language.spelling import correct
+from maniskill_taskgrasp.language.spelling import correct, correct_verb
 from maniskill_taskgrasp.language.text import FILLERS, MAX_SEGMENTS, clean, split_sentences
 
 if TYPE_CHECKING:
@@ -51,15 +51,36 @@ def understand(text: str, object_override: str | None = None) -> Instruction | R
     if refused is not None:
         return refused
     corrected, notes = correct(cleaned)
-    segments, docs = read_segments(corrected)
+    result = understand_clean(text, corrected, notes, object_override)
+    if isinstance(result, Rejected) and result.kind in {"no_action", "off_topic"}:
+        again, more = correct_verb(corrected, 0)
+        if more:
+            second = understand_clean(text, again, (*notes, *more), object_override)
+            named = isinstance(second, Instruction) and second.object_score >= SYNONYM_SCORE
+            return second if named else result
+    return result
+
+
+def understand_clean(
+    text: str, cleaned: str, notes: tuple[str, ...], object_override: str | None
+) -> Instruction | Rejected:
+    """The answer for a cleaned and corrected text.
+
+    Args:
+        text: as typed, for the messages.
+        cleaned: the text to read.
+        notes: remarks on what was corrected.
+        object_override: as in `parse`.
+    """
+    segments, docs = read_segments(cleaned)
     told = tell(segments, docs)
     verb = contradiction(told)
     if verb is not None:
         reason = f"{echo(text)} both asks for and forbids {verb!r}: say which of the two"
         return Rejected(text, reason, "contradictory")
-    bare = bare_name(corrected)
-    if bare is not None:
-        return bare_request(text, corrected, bare, notes)
+    bare = bare_name(cleaned)
+    if bare is not None and object_override is None:
+        return bare_request(text, cleaned, bare, notes)
     answers = [answer(task, text, object_override) for task in make_tasks(told)]
     understood = [a for a in answers if isinstance(a, Instruction)]
     if not understood:
@@ -74,8 +95,11 @@ def understand(text: str, object_override: str | None = None) -> Instruction | R
 def bare_name(cleaned: str) -> str | None:
     """The object that is all there is in a text but politeness, None for anything more."""
     words = [w.strip(",.!?") for w in cleaned.split()]
-    kept = [w for w in words if w not in FILLERS | {"the", "a", "an", "my", "that", "this"}]
-    found = load_lexicon().names.get(" ".join(kept), ())
+    while words and words[0] in FILLERS | {"the", "a", "an", "my", "that", "this"}:
+        words = words[1:]
+    while words and words[-1] in FILLERS:
+        words = words[:-1]
+    found = load_lexicon().names.get(" ".join(words), ())
     return found[0][0] if found else None
 
 
@@ -83,7 +107,7 @@ def bare_request(
     text: str, cleaned: str, name: str, notes: tuple[str, ...]
 ) -> Instruction | Rejected:
     """A name alone is a transfer when it is said politely, and nothing otherwise."""
-    if "please" not in cleaned.split() and "please" not in cleaned.replace(".", " ").split():
+    if "please" not in cleaned:
         reason = f"{echo(text)} names {name!r} but nothing to do with it: try 'hand me the {name}'"
         return Rejected(text, reason, "no_action")
     return Instruction(
@@ -153,8 +177,12 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
             return Rejected(text, reason, "off_topic")
     action = scores.ranked[0][0] if scores is not None else None
     held = Held(None, 1.0) if object_override else choose_object(task, action)
-    if held.name is None and object_override is None:
-        return no_object(task, text, held)
+    if object_override is None:
+        if held.name is None:
+            return no_object(task, text, held)
+        if scores is not None and held.guessed and scores.no_action > NO_ACTION_MAXIMUM:
+            reason = f"no action of the data fits {echo(task.source.clause.text)}: {TRY}"
+            return Rejected(text, reason, "off_topic")
     notes = [n for n in (held.note, TRANSFER_NOTE if action is None else None) if n]
     return Instruction(
         text=task.source.clause.text,
