@@ -1,6 +1,8 @@
 """Laws of the trainer's arithmetic: advantages, losses, scaling, intervals, settings."""
 
 import math
+import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,10 +10,17 @@ import torch
 from gymnasium import spaces
 
 from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.train.distributed import Processes
 from maniskill_taskgrasp.train.intervals import wilson_interval
 from maniskill_taskgrasp.train.ppo_agent import ActionScaler, Agent, ObsNormalizer, sample_moments
 from maniskill_taskgrasp.train.ppo_config import PPOConfig, check_config, default_config
-from maniskill_taskgrasp.train.ppo_update import Batch, explained_variance, policy_loss, value_loss
+from maniskill_taskgrasp.train.ppo_update import (
+    Batch,
+    explained_variance,
+    policy_loss,
+    update,
+    value_loss,
+)
 from maniskill_taskgrasp.train.rollout import compute_advantages
 
 GAMMA, LAMBDA = 0.9, 0.8
@@ -220,3 +229,25 @@ def test_environments_must_divide_among_processes():
     """Uneven shares would weigh gradients wrongly."""
     with pytest.raises(InputError, match="multiple of 3"):
         check_config(PPOConfig(num_envs=64), world_size=3)
+
+
+@pytest.mark.slow
+def test_updates_of_50k_samples_take_under_20_cpu_seconds():
+    """Learning costs little beside the simulation: TaskGrasp's settings on noise, one thread."""
+    config = replace(default_config("TaskGrasp-v0", None, False), target_kl=None)
+    torch.manual_seed(0)
+    torch.set_num_threads(1)
+    agent = Agent(60, 10)
+    optimizer = torch.optim.Adam(agent.parameters(), lr=config.learning_rate, fused=True)
+    samples = config.batch_size
+    obs, actions = torch.randn(samples, 60), torch.randn(samples, 10)
+    noise = torch.randn(3, samples)
+    with torch.no_grad():
+        logprobs, _, _ = agent(obs, actions)
+    batch = Batch(obs, actions, logprobs, *noise)
+    started = time.process_time()
+    for _ in range(math.ceil(50_000 / samples)):
+        update(agent, optimizer, batch, config, Processes())
+    seconds = time.process_time() - started
+    print(f"{seconds:.1f} CPU seconds")  # noqa: T201
+    assert seconds < 20

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -42,41 +43,47 @@ def _sim_backend(config: PPOConfig, device: str) -> str:
 
 
 def make_env(config: PPOConfig, num_envs: int, device: str, **kwargs: Any) -> gym.Env:
-    """gym.make with a user's flags; every refusal becomes one line that says what would do."""
+    """gym.make with a user's flags.
+
+    Raises:
+        InputError: the task does not exist or refuses a flag; says what would do.
+    """
     import mani_skill.envs  # noqa: F401  # Registers ManiSkill's own tasks.
 
     import maniskill_taskgrasp  # noqa: F401  # Registers ours.
 
     arguments = task_kwargs(config) | kwargs
-    backend = _sim_backend(config, device)
+    arguments |= {"obs_mode": "state", "sim_backend": _sim_backend(config, device)}
     try:
-        return gym.make(
-            config.env_id, num_envs=num_envs, obs_mode="state", sim_backend=backend, **arguments
+        return gym.make(config.env_id, num_envs=num_envs, **arguments)
+    except Exception as error:
+        refusal = _refusal(error, config.env_id, num_envs)
+        if refusal is None:
+            raise
+        raise refusal from error
+
+
+def _refusal(error: Exception, env_id: str, num_envs: int) -> InputError | None:
+    """What a user should be told when a task could not be made; None where it is no mistake."""
+    text = str(error)
+    if isinstance(error, gym.error.UnregisteredEnv):
+        known = (name for name in gym.registry if "-v" in name)
+        more = "python -c 'import mani_skill.envs, gymnasium as g; g.pprint_registry()'"
+        return unknown_name("environment", env_id, known, more)
+    if isinstance(error, RuntimeError) and num_envs > 1 and "multiple environments" in text:
+        return InputError(
+            f"{echo(env_id)} cannot run {num_envs} environments in one process on a CPU: use "
+            "--num-envs 1 (or torchrun with one each), --env-vectorization cpu, or a CUDA GPU"
         )
-    except gym.error.UnregisteredEnv as error:
-        known = (env_id for env_id in gym.registry if "-v" in env_id)
-        raise unknown_name(
-            "environment",
-            config.env_id,
-            known,
-            "python -c 'import mani_skill.envs, gymnasium; gymnasium.pprint_registry()'",
-        ) from error
-    except RuntimeError as error:
-        if num_envs == 1 or "multiple environments" not in str(error):
-            raise
-        raise InputError(
-            f"{echo(config.env_id)} cannot run {num_envs} environments in one process on a CPU: "
-            "use --num-envs 1 (or torchrun with one each), --env-vectorization cpu, or a CUDA GPU"
-        ) from error
-    except TypeError as error:
-        if "unexpected keyword" not in str(error):
-            raise
-        raise InputError(
-            f"{echo(config.env_id)} does not know one of {sorted(arguments)}: leave out the "
-            f"flags that belong to another task ({error})"
-        ) from error
-    except (NotImplementedError, KeyError) as error:
-        raise InputError(f"{echo(config.env_id)} refuses {arguments}: {error}") from error
+    unknown = re.search(r"unexpected keyword argument '(\w+)'", text)
+    if isinstance(error, TypeError) and unknown is not None:
+        flag = "--" + unknown[1].replace("_", "-")
+        return InputError(f"{echo(env_id)} has no {flag}: leave it out")
+    if isinstance(error, AssertionError) and "not in supported modes" in text:
+        return InputError(f"--control-mode {text.replace(' not in', ': not in')}")
+    if isinstance(error, NotImplementedError):
+        return InputError(f"{echo(env_id)} refuses its arguments: {' '.join(text.split())}")
+    return None
 
 
 def checked(envs: Any, config: PPOConfig) -> VectorEnv:

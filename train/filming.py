@@ -14,17 +14,6 @@ from maniskill_taskgrasp.train.ppo_config import PPOConfig
 VIDEO_FPS = 20  # ManiSkill's control rate, so that videos run in real time.
 
 
-def can_render() -> bool:
-    """Whether SAPIEN finds a Vulkan device; asking does not disturb anything."""
-    import sapien
-
-    try:
-        sapien.render.get_device_summary()
-    except RuntimeError:
-        return False
-    return True
-
-
 def film_episode(
     config: PPOConfig,
     device: str,
@@ -46,7 +35,9 @@ def film_episode(
     from mani_skill.utils.wrappers.record import RecordEpisode
     from mani_skill.vector.wrappers.gymnasium import ManiSkillVectorEnv
 
-    if not can_render():
+    from maniskill_taskgrasp.tasks.rendering import rendering_available
+
+    if not rendering_available():
         return None
     recorder = RecordEpisode(
         environments.make_env(config, 1, device, render_mode="rgb_array"),

@@ -100,7 +100,7 @@ def parse_config(arguments: list[str]) -> PPOConfig:
 
 
 def run_folder(config: PPOConfig, checkpoint_path: Path | None) -> Path:
-    """The run's folder: the resumed one, or a new one.
+    """The run's folder: the resumed one's, or a name for a new one.
 
     Raises:
         InputError: the name given by --exp-name is taken.
@@ -110,12 +110,10 @@ def run_folder(config: PPOConfig, checkpoint_path: Path | None) -> Path:
     task = config.env_id.rpartition(":")[2]
     name = config.exp_name or f"{task}__ppo__{config.seed}__{int(time.time())}"
     folder = Path(config.runs_dir) / name
-    try:
-        folder.mkdir(parents=True)
-    except FileExistsError as error:
+    if folder.exists():
         raise InputError(
             f"{echo(folder)} exists: choose another --exp-name, or go on with --resume {name}"
-        ) from error
+        )
     return folder
 
 
@@ -132,9 +130,7 @@ def train(config: PPOConfig, factories: EnvFactories | None = None) -> TrainResu
     checkpoint_path = find_run(config.resume, config.runs_dir) if config.resume else None
     processes = join_processes(use_cuda)
     try:
-        # Only one process makes the folder; all hear its name.
-        folder = run_folder(config, checkpoint_path) if processes.is_main else None
-        run_dir = processes.gather(folder)[0]
+        run_dir = processes.gather(run_folder(config, checkpoint_path))[0]
         device = torch.device("cuda", processes.local_rank) if use_cuda else torch.device("cpu")
         trainer = Trainer(config, processes, factories or EnvFactories(), run_dir, device)
         try:
@@ -156,6 +152,7 @@ def _run(trainer: Trainer, checkpoint_path: Path | None) -> Evaluation:
         trainer.load_weights(checkpoint)
     main = trainer.processes.is_main
     if main:
+        run_dir.mkdir(parents=True, exist_ok=True)
         write_json(run_dir / "config.json", asdict(config))
     if config.evaluate:
         evaluation = trainer.evaluate()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -255,5 +256,7 @@ def check_config(config: PPOConfig, world_size: int) -> None:
         )
     if config.evaluate and config.checkpoint is None:
         raise InputError("--evaluate needs --checkpoint FILE, the policy to evaluate")
+    if config.track and importlib.util.find_spec("wandb") is None:
+        raise InputError("--track needs wandb: pip install wandb, or leave --track out")
     if config.cudagraphs and not config.compile:
         raise InputError("--cudagraphs needs --compile")

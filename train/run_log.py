@@ -10,7 +10,6 @@ from typing import Any
 
 from tqdm import tqdm
 
-from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.train.ppo_config import PPOConfig
 
 CURVE_NAME = "curve.csv"  # One row an iteration.
@@ -62,10 +61,8 @@ def _tensorboard(run_dir: Path, global_step: int) -> Any:
 
 
 def _wandb(config: PPOConfig, run_dir: Path, settings: dict[str, Any]) -> Any:
-    try:
-        import wandb
-    except ImportError as error:
-        raise InputError("--track needs wandb: pip install wandb, or leave --track out") from error
+    import wandb
+
     return wandb.init(
         project=config.wandb_project_name,
         entity=config.wandb_entity,
