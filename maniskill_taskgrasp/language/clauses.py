@@ -116,7 +116,8 @@ def _light_noun(doc: Doc, verb: int, high: int) -> int | None:
     """
     receiver = verb + 1 < high and doc[verb + 1].lower_ in RECEIVERS
     named = {i for m in doc._.mentions for i in range(m.start, m.end)}
-    giving = doc[verb].lemma_ in {"give", "do"} and not receiver and doc[verb + 1].lower_ != "a"
+    direct = verb + 1 < high and doc[verb + 1].lower_ in INDEFINITE
+    giving = doc[verb].lemma_ in {"give", "do"} and not receiver and not direct
     doing = doc[verb].lemma_ in {"do", "perform", "take", "make"}
     for at in range(verb + 1, high):
         token = doc[at]
@@ -199,7 +200,7 @@ def _share_roles(doc: Doc, clauses: list[Clause]) -> list[Clause]:
     shared = list(clauses)
     for k in range(len(clauses) - 1):
         this, following = shared[k], clauses[k + 1]
-        joined = doc[this.at + 1].lower_ in {"and", "or", ","}
+        joined = this.at + 1 < len(doc) and doc[this.at + 1].lower_ in {"and", "or", ","}
         if not this.roles and joined:
             text = f"{this.text.rstrip(' ,')} {following.text.partition(' ')[2]}"
             text = text.replace(" and ", " ").replace(" or ", " ")

@@ -117,6 +117,6 @@ def _is_noun(token: Token) -> bool:
 
 
 def _promoted(role: Role, doc: Doc, verb: int) -> Role:
-    beside_verb = role.kind == "place" and doc[verb + 1].lower_ in PLACE_WORDS
+    beside_verb = role.kind == "place" and doc[min(verb + 1, len(doc) - 1)].lower_ in PLACE_WORDS
     between = [t for t in doc[verb + 2 : role.at] if t.pos_ not in TOKENS_IN_PHRASE | {"PRON"}]
     return replace(role, kind="target") if beside_verb and not between else role
