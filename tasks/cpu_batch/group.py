@@ -15,6 +15,7 @@ from maniskill_taskgrasp.tasks.cpu_batch.arrays import Arrays
 from maniskill_taskgrasp.tasks.cpu_batch.contacts import ContactTable
 
 BODY = 13  # Floats of a body's state.
+NO_PUSH = np.zeros(3, dtype=np.float32)
 # SAPIEN packs a body as quaternion, position, velocities; the GPU buffers put position first.
 PACKED_TO_BUFFER = np.array([4, 5, 6, 0, 1, 2, 3, 7, 8, 9, 10, 11, 12])
 
@@ -39,6 +40,7 @@ class EnvGroup:
         self.articulations: list[physx.PhysxArticulation] = []
         self.statics: list[Any] = []
         self.physics_seconds = 0.0
+        self._result: Any = None
         self._number()
         self._stale = np.ones(len(self.scenes), dtype=bool)
         self._moving_stale = True
@@ -49,7 +51,8 @@ class EnvGroup:
 
     def _number(self) -> None:
         """Number the bodies and find where each is in the packed state of the systems."""
-        body_env, articulation_env, dynamic, links = [], [], [], []
+        body_env: list[int] = []
+        articulation_env, dynamic, links = [], [], []
         dynamic_start, root_start, link_place = [], [], []
         state, entities = 0, 0
         self._state_slices, self._entity_slices = [], []
@@ -113,7 +116,9 @@ class EnvGroup:
         self.read()
         self._check_packing()
         self._told_target = self._state[target_source]
-        self._told_target_velocity = self._state[np.minimum(target_source + 1, len(self._state) - 1)]
+        self._told_target_velocity = self._state[
+            np.minimum(target_source + 1, len(self._state) - 1)
+        ]
         arrays.sent_target[:] = self._told_target
         arrays.sent_target_velocity[:] = self._told_target_velocity
 
@@ -215,6 +220,7 @@ class EnvGroup:
             if not body.kinematic:
                 body.set_linear_velocity(state[7:10])
                 body.set_angular_velocity(state[10:13])
+            self.arrays.sim_body[row] = state
         self._stale[self.body_env[rows]] = True
 
     def write_root_pose(self, rows: Sequence[int]) -> None:
@@ -222,6 +228,7 @@ class EnvGroup:
         for row in rows:
             state = self.arrays.body[self.root_row[row]]
             self.articulations[row].set_root_pose(sapien.Pose(state[:3], state[3:7]))
+            self.arrays.sim_body[self.root_row[row], :7] = state[:7]
         self._stale[self.articulation_env[rows]] = True
 
     def write_root_velocity(self, rows: Sequence[int]) -> None:
@@ -231,18 +238,21 @@ class EnvGroup:
             if articulation.root.joint.type != "fixed":
                 articulation.set_root_linear_velocity(state[7:10])
                 articulation.set_root_angular_velocity(state[10:13])
+            self.arrays.sim_body[self.root_row[row], 7:] = state[7:]
         self._stale[self.articulation_env[rows]] = True
 
     def write_qpos(self, rows: Sequence[int]) -> None:
         """Joint positions."""
         for row in rows:
             self.articulations[row].set_qpos(self.arrays.qpos[row, : self.dofs[row]])
+        self.arrays.sim_qpos[rows] = self.arrays.qpos[rows]
         self._stale[self.articulation_env[rows]] = True
 
     def write_qvel(self, rows: Sequence[int]) -> None:
         """Joint velocities."""
         for row in rows:
             self.articulations[row].set_qvel(self.arrays.qvel[row, : self.dofs[row]])
+        self.arrays.sim_qvel[rows] = self.arrays.qvel[rows]
         self._stale[self.articulation_env[rows]] = True
 
     def write_qf(self, rows: Sequence[int]) -> None:
@@ -251,10 +261,14 @@ class EnvGroup:
             self.articulations[row].set_qf(self.arrays.qf[row, : self.dofs[row]])
 
     def write_force(self, rows: Sequence[int]) -> None:
-        """Force at the centre of mass and torque, for one step."""
+        """Forces at the centres of mass, for one step."""
         for row in rows:
-            force, torque = self.arrays.force[row, :3], self.arrays.torque[row, :3]
-            self.bodies[row].add_force_torque(force, torque)
+            self.bodies[row].add_force_torque(self.arrays.force[row, :3], NO_PUSH)
+
+    def write_torque(self, rows: Sequence[int]) -> None:
+        """Torques, for one step."""
+        for row in rows:
+            self.bodies[row].add_force_torque(NO_PUSH, self.arrays.torque[row, :3])
 
     def write_targets(self) -> None:
         """Drive targets, from `sent_target` and `sent_target_velocity`."""
@@ -262,6 +276,20 @@ class EnvGroup:
         moving, told = self.arrays.sent_target_velocity, self._told_target_velocity
         if not np.array_equal(moving, told):
             _tell(moving, told, self._set_target_velocity)
+
+    def revive(self) -> None:
+        """Take the state over that another process has come to, as far as the arrays know it."""
+        here = self.arrays
+        here.body[:], here.qpos[:], here.qvel[:] = here.sim_body, here.sim_qpos, here.sim_qvel
+        self.forget(range(len(self.scenes)))
+        articulations = range(len(self.articulations))
+        self.write_dynamic(self.dynamic.tolist())
+        self.write_root_pose(articulations)
+        self.write_root_velocity(articulations)
+        self.write_qpos(articulations)
+        self.write_qvel(articulations)
+        self._told_target[:] = self._told_target_velocity[:] = np.nan
+        self.write_targets()
 
     # Contacts ------------------------------------------------------------------------------------
 

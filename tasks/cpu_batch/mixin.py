@@ -13,14 +13,12 @@ import torch
 from mani_skill.envs.utils.system.backend import CPU_SIM_BACKENDS, BackendInfo
 
 from maniskill_taskgrasp.tasks.actions import check_action
-from maniskill_taskgrasp.tasks.cpu_batch.scene import (
-    BatchedCpuScene,
-    adopting_structs,
-    build_scenes,
-)
+from maniskill_taskgrasp.tasks.cpu_batch.scene import BatchedCpuScene, adopting_structs
+from maniskill_taskgrasp.tasks.cpu_batch.workers import default_processes
 from maniskill_taskgrasp.tasks.rendering import choose_render_backend, needs_cameras
 
 if TYPE_CHECKING:
+    from mani_skill.agents.base_agent import BaseAgent
     from mani_skill.envs.sapien_env import BaseEnv as Base
 else:
     Base = object
@@ -42,6 +40,9 @@ class CpuBatchMixin(Base):
     `num_envs > 1` then runs on the CPU when `sim_backend` says so, or is "auto" and there is no
     CUDA device. With one environment or on CUDA nothing changes, except that bad actions are
     refused before anything moves on every back end.
+
+    The physics is shared among `scene_config.cpu_workers` processes of `sim_config` (0, the
+    default: one per core where that pays). Results do not depend on their number.
 
     Raises:
         ValueError: cameras are asked for on the batched CPU or where nothing can render.
@@ -93,21 +94,37 @@ class CpuBatchMixin(Base):
         self._backend = info
 
     def _set_scene_config(self) -> None:
-        if self._cpu_batched:
-            # Without it, an environment's result depends on who else is in its system.
-            self.sim_config.scene_config.enable_enhanced_determinism = True
-        super()._set_scene_config()
+        if not self._cpu_batched:
+            super()._set_scene_config()
+            return
+        wanted = self.sim_config.scene_config
+        # Threads inside PhysX are of no use to systems of one environment each.
+        self.sim_config.scene_config = replace(
+            wanted, cpu_workers=0, enable_enhanced_determinism=True
+        )
+        try:
+            super()._set_scene_config()
+        finally:
+            self.sim_config.scene_config = wanted
 
     def _setup_scene(self) -> None:
         if not self._cpu_batched:
             super()._setup_scene()
             return
         self._set_scene_config()
-        systems, scenes = build_scenes(self.num_envs, self.sim_config.spacing)
         self.scene = BatchedCpuScene(
-            systems, scenes, sim_config=self.sim_config, device=self.device, backend=self.backend
+            self.num_envs,
+            self.sim_config.scene_config.cpu_workers or default_processes(self.num_envs),
+            sim_config=self.sim_config,
+            device=self.device,
+            backend=self.backend,
         )
         self.scene.px.timestep = 1.0 / self._sim_freq
+
+    def _clear(self) -> None:
+        if self._cpu_batched and self.scene is not None:
+            self.scene.px.close()
+        super()._clear()
 
     def reset(self, seed: Any = None, options: dict | None = None) -> Any:
         if not self._cpu_batched:
@@ -127,6 +144,9 @@ class CpuBatchMixin(Base):
             yield
             return
         system = self.scene.px
+        if not system.ready:
+            yield
+            return
         system.begin_rewrite(slice(None) if envs is None else np.asarray(envs))
         try:
             yield
@@ -135,12 +155,19 @@ class CpuBatchMixin(Base):
 
     def _step_action(self, action: Any) -> Any:
         check_action(action, self.agent, self.num_envs)
+        if self._cpu_batched and _switches_controller(action, self.agent):
+            self.scene.px.join()  # A new controller sets joint drives on SAPIEN's objects.
         return super()._step_action(action)
 
     def render(self) -> Any:
         if self._cpu_batched:
             raise ValueError("nothing renders with num_envs > 1 on the CPU: use num_envs=1 or CUDA")
         return super().render()
+
+
+def _switches_controller(action: Any, agent: BaseAgent) -> bool:
+    mode = action.get("control_mode") if isinstance(action, dict) else None
+    return mode is not None and mode not in agent.controllers
 
 
 def _check_version() -> None:

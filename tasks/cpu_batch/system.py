@@ -214,8 +214,22 @@ class BatchedCpuSystem:
             if share.group is share.local:
                 share.group = RemoteGroup(share.local)
 
+    def join(self) -> None:
+        """Bring all environments back into this process, until the next step spreads them again.
+
+        Needed before SAPIEN's objects are changed directly once stepping has begun.
+        """
+        if self.ready:
+            self._refresh()
+            for share in self._shares:
+                if isinstance(share.group, RemoteGroup):
+                    share.group.close()
+                    share.group = share.local
+                    share.local.revive()
+                    self._outdated = True
+
     def close(self) -> None:
-        """End the processes."""
+        """End the other processes."""
         for share in self._shares if self.ready else []:
             if isinstance(share.group, RemoteGroup):
                 share.group.close()
@@ -241,25 +255,34 @@ class BatchedCpuSystem:
             return
         if self._pending:
             self._spread()
-        # Others first: they work while this process does its own share, which is the first.
-        for share in reversed(self._shares):
-            share.group.post("advance", self._pending)
-        for share in self._shares:
-            share.group.wait()
+        self._call("advance", self._pending)
         self._pending = 0
         self._outdated = self._moving_known = self._targets_on_their_way = False
         self._tables = None
+
+    def _call(self, name: str, *args: Any) -> list[Any]:
+        """Call a method of every group and collect the results."""
+        return self._call_each(name, [args] * len(self._shares))
+
+    def _call_each(self, name: str, args: Sequence[tuple | None]) -> list[Any]:
+        """The same with arguments of its own for every group; None spares it."""
+        called = [(s.group, a) for s, a in zip(self._shares, args, strict=True) if a is not None]
+        # Other processes first: they work while this one does its own share, the first.
+        for group, arguments in reversed(called):
+            group.post(name, *arguments)
+        return [group.wait() for group, _ in called]
+
+    def _settle(self) -> None:
+        """Take the pending steps before something is changed."""
+        if self._pending:
+            self._refresh()
 
     def begin_rewrite(self, envs: Any) -> None:
         """Until `end_rewrite`, apply calls write these environments whole; their past is void."""
         self._refresh()
         self._rewriting[envs] = True
-        for share in self._shares:
-            inside = np.nonzero(self._rewriting[share.envs.start : share.envs.stop])[0].tolist()
-            if inside:
-                share.group.post("forget", inside)
-        for share in self._shares:
-            share.group.wait()
+        rows = [np.nonzero(self._rewriting[_slice(s.envs)])[0].tolist() for s in self._shares]
+        self._call_each("forget", [(inside,) if inside else None for inside in rows])
         self._tables = None
 
     def end_rewrite(self) -> None:
@@ -299,10 +322,7 @@ class BatchedCpuSystem:
         if self._moving_known:
             return
         self._refresh()
-        for share in self._shares:
-            share.group.post("read_moving")
-        for share in self._shares:
-            share.group.wait()
+        self._call("read_moving")
         self._arrays.body[self._links, 7:] = self._arrays.sim_body[self._links, 7:]
         self._moving_known = True
 
@@ -317,9 +337,7 @@ class BatchedCpuSystem:
     def gpu_fetch_articulation_link_incoming_joint_forces(self) -> None:
         """Spatial force on each link by its joint, into (articulations, max links, 6)."""
         self._refresh()
-        for share in self._shares:
-            share.group.post("link_incoming_joint_forces")
-        forces = [force for share in self._shares for force in share.group.wait()]
+        forces = [force for part in self._call("link_incoming_joint_forces") for force in part]
         padded = np.zeros((len(forces), max(map(len, forces)), 6), dtype=np.float32)
         for row, force in zip(padded, forces, strict=True):
             row[: len(force)] = force
@@ -329,18 +347,17 @@ class BatchedCpuSystem:
 
     def _write(self, name: str, changed: np.ndarray, env: np.ndarray, of_bodies: bool) -> None:
         """Have rows written that changed or whose environment is being rewritten."""
-        self._refresh()
+        self._settle()
         rows = np.nonzero(changed | self._rewriting[env])[0]
         if of_bodies:
             rows = self._dynamic[rows]
+        args: list[tuple | None] = []
         for share in self._shares:
             own = share.bodies if of_bodies else share.articulations
             inside = rows[(rows >= own.start) & (rows < own.stop)] - own.start
-            if len(inside):
-                share.group.post(name, inside.tolist())
-                self._outdated = True
-        for share in self._shares:
-            share.group.wait()
+            args.append((inside.tolist(),) if len(inside) else None)
+        self._call_each(name, args)
+        self._outdated = self._outdated or len(rows) > 0
 
     def gpu_apply_rigid_dynamic_data(self) -> None:
         """Poses and velocities of rigid dynamic bodies."""
@@ -372,7 +389,7 @@ class BatchedCpuSystem:
 
     def gpu_apply_articulation_qf(self) -> None:
         """Joint forces, where there is any or was at the last call."""
-        asked = self._arrays.qf.any(axis=1)
+        asked = np.asarray(self._arrays.qf.any(axis=1))
         self._write("write_qf", asked | self._pushed, self._articulation_env, of_bodies=False)
         self._pushed = asked
 
@@ -385,8 +402,7 @@ class BatchedCpuSystem:
         self._send_targets(self._arrays.target_velocity, self._arrays.sent_target_velocity)
 
     def _send_targets(self, wanted: np.ndarray, sent: np.ndarray) -> None:
-        if self._pending:
-            self._refresh()  # The steps asked for so far go with the old targets.
+        self._settle()  # The steps asked for so far go with the old targets.
         if self._targets_on_their_way:
             for share in self._shares:
                 share.group.wait()  # Another process may still be reading the last ones.
@@ -397,24 +413,17 @@ class BatchedCpuSystem:
 
     def gpu_apply_rigid_dynamic_force(self) -> None:
         """Forces [N] at the centres of mass for one step."""
-        self._push(self._arrays.force, self._arrays.torque)
+        self._push("write_force", self._arrays.force)
 
     def gpu_apply_rigid_dynamic_torque(self) -> None:
         """Torques [Nm] for one step."""
-        self._push(self._arrays.torque, self._arrays.force)
+        self._push("write_torque", self._arrays.torque)
 
-    def _push(self, wanted: np.ndarray, other: np.ndarray) -> None:
-        """Apply one of force and torque; both are spent with the step, so the buffer is cleared."""
-        kept = other.copy()
-        other[:] = 0
-        self._refresh()
-        for share in self._shares:
-            rows = wanted[share.bodies.start : share.bodies.stop].any(axis=1)
-            share.group.post("write_force", np.nonzero(rows)[0].tolist())
-        for share in self._shares:
-            share.group.wait()
+    def _push(self, name: str, wanted: np.ndarray) -> None:
+        self._settle()
+        pushed = [np.nonzero(wanted[_slice(s.bodies)].any(axis=1))[0] for s in self._shares]
+        self._call_each(name, [(rows.tolist(),) for rows in pushed])
         wanted[:] = 0
-        other[:] = kept
 
     def gpu_update_articulation_kinematics(self) -> None:
         """Nothing: SAPIEN moves the links when it is given joint positions or a root pose."""
@@ -440,20 +449,17 @@ class BatchedCpuSystem:
 
     def _query(self, name: str, groups: list[int], what: list) -> ImpulseQuery:
         of_group, rows_signs = np.array(groups), np.zeros((len(what), 2), dtype=int)
-        for number, share in enumerate(self._shares):
-            mine = np.nonzero(of_group == number)[0]
-            if len(mine):
-                share.group.post(name, [what[i] for i in mine])
-                rows_signs[mine] = share.group.wait()
+        mine = [np.nonzero(of_group == number)[0] for number in range(len(self._shares))]
+        args = [([what[i] for i in places],) if len(places) else None for places in mine]
+        for places, answer in zip(filter(len, mine), self._call_each(name, args), strict=True):
+            rows_signs[places] = answer
         self._tables = None
         return ImpulseQuery(of_group, rows_signs[:, 0], rows_signs[:, 1])
 
     def _fill(self, query: ImpulseQuery) -> None:
         self._refresh()
         if self._tables is None:
-            for share in reversed(self._shares):
-                share.group.post("contact_table")
-            self._tables = [share.group.wait() for share in self._shares]
+            self._tables = self._call("contact_table")
         query.fill(self._tables)
 
     def gpu_query_contact_pair_impulses(self, query: ImpulseQuery) -> None:
