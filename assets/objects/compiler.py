@@ -9,7 +9,9 @@ import logging
 import sys
 from pathlib import Path
 
+from maniskill_taskgrasp.assets.objects.library import model_from_json
 from maniskill_taskgrasp.assets.objects.recipe import Recipe, load_recipes
+from maniskill_taskgrasp.assets.objects.settle import settled_poses, steady_stands
 from maniskill_taskgrasp.assets.objects.solid import Solid, assemble, mass_properties
 from maniskill_taskgrasp.assets.objects.stable import candidate_poses
 from maniskill_taskgrasp.assets.objects.store import (
@@ -62,6 +64,14 @@ def main() -> None:
     """Compile every recipe and write library.json."""
     logging.basicConfig(level=logging.INFO, stream=sys.stderr, format="%(message)s")
     objects = {name: compile_object(recipe) for name, recipe in load_recipes().items()}
+    models = [model_from_json(name, data) for name, data in objects.items()]
+    for model, poses in zip(models, settled_poses(models), strict=True):
+        if not poses:
+            raise RuntimeError(f"{model.name!r} rests in no pose that physics keeps")
+        objects[model.name]["resting_poses"] = [pose_to_json(pose) for pose in poses]
+    models = [model_from_json(name, data) for name, data in objects.items()]
+    for model, stands in zip(models, steady_stands(models), strict=True):
+        objects[model.name]["stands"] = list(stands)
     write_atomically(LIBRARY, to_lines(objects))
     logger.info("%d objects -> %s", len(objects), LIBRARY.name)
 

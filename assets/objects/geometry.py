@@ -93,8 +93,8 @@ def _ring(n: int) -> Array:
 
 @lru_cache(maxsize=8)
 def _ball(n: int) -> Array:
-    """(m, 3) unit sphere, n points along a meridian circle and m about n^2 / 3."""
-    m = n * n // 3
+    """(m, 3) unit sphere, n points along a great circle and m about n^2 / 5."""
+    m = n * n // 5
     i = np.arange(m) + 0.5  # Fibonacci lattice: even without poles.
     polar, turn = np.arccos(1 - 2 * i / m), np.pi * (1 + 5**0.5) * i
     sine = np.sin(polar)
@@ -138,12 +138,12 @@ def depth_inside(part: Part, points: Array) -> Array:
     if part.kind == "cylinder":
         radius, half = part.size
         return np.minimum(half - np.abs(local[:, 0]), radius - np.hypot(local[:, 1], local[:, 2]))
-    planes = _hull(part)[1]
+    planes = part.hull[1]
     return -(local @ planes[:, :3].T + planes[:, 3]).max(1)
 
 
-def _hull(part: Part) -> tuple[Array, Array]:
-    """Triangles (m, 3, 3) and outward planes (k, 4) of a convex part before it is placed."""
+def local_hull(part: Part) -> tuple[Array, Array]:
+    """Triangles (m, 3, 3) [m] and outward planes (k, 4) of a part before it is placed."""
     from scipy.spatial import ConvexHull  # 0.1 s to import; primitives never need it.
 
     corners = _local_corners(part, CIRCLE_CORNERS)
@@ -153,7 +153,7 @@ def _hull(part: Part) -> tuple[Array, Array]:
 
 def part_triangles(part: Part) -> Array:
     """(m, 3, 3) [m] triangles of the part's surface (winding not defined), placed."""
-    return _hull(part)[0] @ quat_to_matrix(part.quat_wxyz).T + part.position
+    return part.hull[0] @ quat_to_matrix(part.quat_wxyz).T + part.position
 
 
 def spread_points(parts: Sequence[Part], n: int, seed: int) -> NDArray[np.float32]:

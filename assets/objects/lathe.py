@@ -11,9 +11,12 @@ from maniskill_taskgrasp.assets.objects.model import Part
 
 Array = NDArray[np.float64]
 
-CORNERS = 16  # Around a convex part: with 4 rings it stays within the GPU's 64 vertices.
 MAX_RINGS = 4
-BULGE = 1.5e-3  # [m] a part may bridge a hollow of the profile this deep (the bar is 2 mm).
+CORNERS = (32, 32, 32, 20, 16)  # Around a part of that many rings: the GPU allows 64.
+POLYGON = 16  # Up to as many drawn sides, a flat and not a corner is turned down.
+POINT = 1e-9  # [m] a smaller radius is a point on the axis.
+BULGE = 1.5e-3  # [m] a part may bridge a hollow of the profile this deep (the bar is 2 mm)
+BULGE_SHARE = 0.06  # and not deeper than this share of the largest radius.
 
 
 def lathe_mesh(profile: Array, sides: int, closed: bool = True) -> tuple[Array, NDArray[np.int64]]:
@@ -26,16 +29,16 @@ def lathe_mesh(profile: Array, sides: int, closed: bool = True) -> tuple[Array, 
     """
     points = [(x, r) for x, r in profile]
     if closed:
-        if points[0][1] > 0:
+        if points[0][1] > POINT:
             points.insert(0, (points[0][0], 0.0))
-        if points[-1][1] > 0:
+        if points[-1][1] > POINT:
             points.append((points[-1][0], 0.0))
-    shift = 0.5 if sides <= CORNERS else 0.0
+    shift = 0.5 if sides <= POLYGON else 0.0
     angle = (np.arange(sides) + shift) * 2 * np.pi / sides - np.pi / 2
     vertices: list[tuple[float, float, float]] = []
     rows = []
     for x, r in points:
-        if closed and r <= 0:
+        if closed and r <= POINT:
             rows.append([len(vertices)] * sides)
             vertices.append((x, 0.0, 0.0))
         else:
@@ -55,17 +58,18 @@ def lathe_mesh(profile: Array, sides: int, closed: bool = True) -> tuple[Array, 
 def lathe_sections(profile: Array, flat: float, sides: int = 0) -> tuple[Part, ...]:
     """Convex parts, end to end along x, of a turned profile (n, 2) of (x, radius).
 
-    A section grows while its convex hull leaves the profile by at most `BULGE`. Straight round
+    A section grows while its part would leave the profile by at most `BULGE`. Straight round
     sections become cylinders.
 
     Args:
         flat: z extent over y extent of the cross section.
         sides: corners of the cross section; 0 means round.
     """
+    bulge = min(BULGE, BULGE_SHARE * float(profile[:, 1].max()))
     parts, start = [], 0
     while start < len(profile) - 1:
         end = start + 1
-        while end < len(profile) - 1 and _bulge(profile[start : end + 2]) <= BULGE:
+        while end < len(profile) - 1 and _misfit(profile[start : end + 2]) <= bulge:
             end += 1
         section = _simplified(_upper_hull(profile[start : end + 1]))
         if np.ptp(section[:, 0]) > 1e-9:
@@ -80,13 +84,13 @@ def _section_part(hull: Array, flat: float, sides: int) -> Part:
         return Part(
             "cylinder", (float(hull[:, 0].mean()), 0.0, 0.0), size=(float(hull[0, 1]), half)
         )
-    count = sides or CORNERS
+    count = sides or CORNERS[int((hull[:, 1] > POINT).sum())]
     angle = (np.arange(count) + 0.5) * 2 * np.pi / count - np.pi / 2
     # Round sections: corners a little outside the circle, so that the volume is the circle's.
     grow = 1.0 if sides else np.sqrt(2 * np.pi / count / np.sin(2 * np.pi / count))
     corners = []
     for x, r in hull:
-        if r <= 1e-9:
+        if r <= POINT:
             corners.append((x, 0.0, 0.0))
         else:
             corners += [(x, r * grow * np.cos(t), r * grow * flat * np.sin(t)) for t in angle]
@@ -111,14 +115,17 @@ def _turn(a: Array, b: Array, c: Array) -> float:
     return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
 
-def _bulge(profile: Array) -> float:
-    """[m] how far the upper hull of a profile rises above its sloping and level stretches."""
+def _misfit(profile: Array) -> float:
+    """[m] how far the part for a stretch of profile would rise above it or stay below it."""
     hull = _upper_hull(profile)
     if len(hull) < 2:
         return 0.0
     sloping = np.diff(profile[:, 0]) > 1e-9
     ends = np.concatenate([profile[:-1][sloping], profile[1:][sloping]])
-    return float((np.interp(ends[:, 0], hull[:, 0], hull[:, 1]) - ends[:, 1]).max())
+    rise = np.interp(ends[:, 0], hull[:, 0], hull[:, 1]) - ends[:, 1]
+    kept = _simplified(hull)
+    sag = hull[:, 1] - np.interp(hull[:, 0], kept[:, 0], kept[:, 1])
+    return float(max(rise.max(), sag.max()))
 
 
 def _simplified(hull: Array) -> Array:

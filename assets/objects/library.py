@@ -56,10 +56,11 @@ def load(name: str) -> ObjectModel:
     """
     if name not in _catalogue():
         raise unknown_name("object", name, _catalogue(), "taskgrasp objects list")
-    return _from_catalogue(name, _catalogue()[name])
+    return model_from_json(name, _catalogue()[name])
 
 
-def _from_catalogue(name: str, data: Json) -> ObjectModel:
+def model_from_json(name: str, data: Json) -> ObjectModel:
+    """Catalogue object from its line of library.json."""
     affordance = load_knowledge().objects[name]
     return ObjectModel(
         name=name,
@@ -75,6 +76,7 @@ def _from_catalogue(name: str, data: Json) -> ObjectModel:
         resting_poses=tuple(pose_from_json(pose) for pose in data["resting_poses"]),
         grasped_center=tuple(data["grasped_center"]),
         grasped_extents_m=tuple(data["grasped_extents_m"]),
+        stands=tuple(data.get("stands", ())),
         material=data["material"],
         category=data["category"],
         source="parametric model, dimensions and mass after the human grasping data",

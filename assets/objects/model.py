@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from maniskill_taskgrasp.assets.objects.geometry import spread_points
+from maniskill_taskgrasp.assets.objects.geometry import local_hull, spread_points
 from maniskill_taskgrasp.knowledge import Affordance
 
 if TYPE_CHECKING:
@@ -31,6 +32,11 @@ class Part:
     """[m] box: half extents; cylinder, capsule: radius, half length; sphere: radius; convex: ()."""
     vertices: NDArray[np.float64] | None = None
     """(n, 3) [m] corners of a convex part before position and quat_wxyz, else None."""
+
+    @cached_property
+    def hull(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Triangles (m, 3, 3) [m] and outward planes (k, 4) of the surface before it is placed."""
+        return local_hull(self)
 
 
 @dataclass(frozen=True)
@@ -70,6 +76,8 @@ class ObjectModel:
     """[m] centre of the portion people grasp (a mug's handle; the whole of a bottle)."""
     grasped_extents_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """[m] size of that portion along the object's x, y and z."""
+    stands: tuple[str, ...] = ()
+    """Fixtures that hold the object still, as two seconds of physics showed."""
     material: str = ""
     category: str = ""
     source: str = ""

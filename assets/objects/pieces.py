@@ -26,7 +26,7 @@ Point = tuple[float, float, float]
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 SIDES = 40  # Facets around a drawn circle.
-ROUND_SHARE = 0.003  # [m] largest rounding of a drawn box: its collision box sticks out < 2 mm.
+MAX_ROUNDING = 0.0024  # [m] of a drawn box: the corners of its collision box stick out < 2 mm.
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def box(x: float, y: float, z: float, colour: str, rounding: float = 0.0) -> Pie
     """Cuboid with extents x, y, z; `rounding` is the radius of its drawn edges."""
     half = np.array([x, y, z]) / 2
     part = Part("box", size=_point(half))
-    radius = min(rounding, ROUND_SHARE, *(half * 0.95))
+    radius = min(rounding, MAX_ROUNDING, *(half * 0.95))
     if radius <= 0:
         corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]) * half
         return convex(corners, colour, part)
@@ -139,16 +139,27 @@ def pill(radius: float, length: float, colour: str) -> Piece:
     return Piece(vertices, faces, colour, (Part("capsule", size=(radius, half)),))
 
 
-def turned(profile: Sequence[Point2], colour: str, flat: float = 1.0, sides: int = SIDES) -> Piece:
+def turned(
+    profile: Sequence[Point2],
+    colour: str,
+    flat: float = 1.0,
+    sides: int = SIDES,
+    hollow: tuple[float, float] = (0.0, 0.0),
+) -> Piece:
     """Solid of revolution about x.
 
     Args:
         profile: (x, radius) [m] from one end to the other, x never falling.
         flat: the z extent is this share of the y extent (an oval bottle).
         sides: corners of the cross section; 6 makes a hexagon with a flat below.
+        hollow: (depth, radius) [m] of a drawn dent in the +x end, at most 2 mm deep.
     """
     outline = np.array(profile, dtype=float)
-    vertices, faces = lathe_mesh(outline, sides)
+    drawn, (depth, radius) = outline, hollow
+    if depth > 0:
+        top = outline[-1, 0]
+        drawn = np.concatenate([outline, [(top, radius), (top - depth, radius * 0.93)]])
+    vertices, faces = lathe_mesh(drawn, sides)
     parts = lathe_sections(outline, flat, sides if sides < SIDES else 0)
     return Piece(vertices * [1, 1, flat], faces, colour, parts)
 

@@ -12,7 +12,7 @@ from maniskill_taskgrasp.assets.objects.pieces import Piece
 Size = tuple[float, float, float]
 Maker = Callable[[float, float, float], list[Piece]]
 
-CHAPTERS = ("tools", "first")
+CHAPTERS = ("bottles", "cleaning", "desk", "household", "kitchen", "machine", "power", "tools")
 
 FRICTION = {
     "rubber": 0.9,
@@ -43,13 +43,20 @@ class Recipe:
     """[m] true a where the data set's is capped at 0.15; None keeps what the data set says."""
     width: float | None = None
     """[m] true b where the data set's is capped too."""
+    shown: str = ""
+    """Resting pose in which it is best recognised, where the rule of render.py picks another."""
 
 
 RECIPES: dict[str, Recipe] = {}
 
 
 def item(
-    name: str, category: str, material: str, length: float | None = None, width: float | None = None
+    name: str,
+    category: str,
+    material: str,
+    length: float | None = None,
+    width: float | None = None,
+    shown: str = "",
 ) -> Callable[[Maker], Maker]:
     """Register a maker of (a, b, c) [m] as the recipe of one object; twice raises."""
 
@@ -58,7 +65,7 @@ def item(
             raise ValueError(f"object {name!r} has two recipes")
         if material not in FRICTION:
             raise ValueError(f"object {name!r} has unknown material {material!r}")
-        RECIPES[name] = Recipe(name, maker, category, material, length, width)
+        RECIPES[name] = Recipe(name, maker, category, material, length, width, shown)
         return maker
 
     return register

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +12,10 @@ from numpy.typing import NDArray
 
 from maniskill_taskgrasp.assets.objects.actor import add_fixture, add_object
 from maniskill_taskgrasp.assets.objects.geometry import quat_to_matrix
-from maniskill_taskgrasp.assets.objects.model import ObjectModel
-from maniskill_taskgrasp.assets.objects.presentation import Presentation
+from maniskill_taskgrasp.assets.objects.model import ObjectModel, RestingPose
+from maniskill_taskgrasp.assets.objects.presentation import STANDS, Presentation, place, present
+from maniskill_taskgrasp.assets.objects.stable import SAME_TURN, symmetry_axes
+from maniskill_taskgrasp.errors import InputError
 
 if TYPE_CHECKING:
     import sapien
@@ -31,6 +34,8 @@ class Rest:
     shift_m: float
     """Travel of the origin."""
     turn_rad: float
+    tilt_rad: float
+    """Turn of the object's x axis alone: all there is to see of a round thing that turns."""
     speed: float
     """[m/s] at the end."""
     quat_wxyz: tuple[float, float, float, float]
@@ -96,7 +101,67 @@ def _measure(entity: sapien.Entity, start: sapien.Pose) -> Rest:
     return Rest(
         shift_m=float(np.linalg.norm(entity.pose.p - start.p)),
         turn_rad=float(np.arccos(np.clip(cosine, -1, 1))),
+        tilt_rad=float(np.arccos(np.clip(before[:, 0] @ after[:, 0], -1, 1))),
         speed=float(np.linalg.norm(body.linear_velocity)),
         quat_wxyz=(float(quat[0]), float(quat[1]), float(quat[2]), float(quat[3])),
         height=float(entity.pose.p[2]),
     )
+
+
+def settled_poses(
+    models: Sequence[ObjectModel], seconds: float = 3.0
+) -> list[tuple[RestingPose, ...]]:
+    """Resting poses of each model as physics leaves them, without those it does not keep.
+
+    Every pose is let go, taken as it ends, and let go again from there; it is kept if it moves
+    less than half of what the settle test allows. Poses that end alike are joined.
+    """
+    cases = [(m, i) for m in models for i in range(len(m.resting_poses))]
+    first = settle([(m, present(m, "table", i)) for m, i in cases], seconds)
+    ended = [
+        replace(m.resting_poses[i], quat_wxyz=rest.quat_wxyz, height=rest.height)
+        for (m, i), rest in zip(cases, first, strict=True)
+    ]
+    again = settle(
+        [
+            (m, Presentation("table", (), (0.0, 0.0, pose.height), pose.quat_wxyz, ""))
+            for (m, _), pose in zip(cases, ended, strict=True)
+        ]
+    )
+    kept: dict[str, list[RestingPose]] = {m.name: [] for m in models}
+    for (model, _), rest, pose in zip(cases, again, ended, strict=True):
+        steady = rest.shift_m < MAX_SHIFT / 2 and rest.turn_rad < MAX_TURN / 2
+        if steady:
+            _join(kept[model.name], pose)
+    return [_shares_to_one(kept[m.name]) for m in models]
+
+
+def _join(poses: list[RestingPose], pose: RestingPose) -> None:
+    """Add a pose, or its probability to one with the same side down."""
+    up = quat_to_matrix(pose.quat_wxyz)[2]
+    for index, other in enumerate(poses):
+        if quat_to_matrix(other.quat_wxyz)[2] @ up > np.cos(SAME_TURN):
+            poses[index] = replace(other, probability=other.probability + pose.probability)
+            return
+    poses.append(pose)
+
+
+def _shares_to_one(poses: list[RestingPose]) -> tuple[RestingPose, ...]:
+    total = sum(pose.probability for pose in poses)
+    return tuple(replace(pose, probability=pose.probability / total) for pose in poses)
+
+
+def steady_stands(models: Sequence[ObjectModel]) -> list[tuple[str, ...]]:
+    """Kinds of fixture that hold each model still; a round one may turn about its own axis."""
+    cases: list[tuple[ObjectModel, Presentation]] = []
+    for model in models:
+        for kind in STANDS:
+            with suppress(InputError):
+                cases.append((model, place(model, kind)))
+    held: dict[str, list[str]] = {m.name: [] for m in models}
+    for (model, presentation), rest in zip(cases, settle(cases), strict=True):
+        round_about_x = 0 in symmetry_axes(np.array(model.extents_m), model.com, model.inertia)
+        turn = rest.tilt_rad if round_about_x else rest.turn_rad
+        if rest.shift_m <= MAX_SHIFT and turn <= MAX_TURN:
+            held[model.name].append(presentation.kind)
+    return [tuple(held[m.name]) for m in models]

@@ -28,19 +28,24 @@ class Solid:
     @property
     def extents(self) -> Array:
         """(3,) [m] of all pieces along x, y, z."""
-        return np.ptp(np.concatenate([p.vertices for p in self.pieces]), axis=0)
+        return np.ptp(solid_points(self.pieces), axis=0)
 
     @property
     def grasped_box(self) -> tuple[Array, Array]:
         """Centre and extents [m] of what people grasp: the held pieces, else all."""
-        held = [p.vertices for p in self.pieces if p.grasped] or [p.vertices for p in self.pieces]
-        points = np.concatenate(held)
+        held = [p for p in self.pieces if p.grasped]
+        points = np.concatenate([p.vertices for p in held]) if held else solid_points(self.pieces)
         return (points.min(0) + points.max(0)) / 2, np.ptp(points, axis=0)
+
+
+def solid_points(pieces: Sequence[Piece]) -> Array:
+    """(n, 3) [m] corners of all pieces but drawn labels, whose thickness is only ink."""
+    return np.concatenate([p.vertices for p in pieces if p.parts])
 
 
 def assemble(pieces: Sequence[Piece]) -> Solid:
     """Pieces moved into the object frame: centred, axes sorted by extent, right-handed."""
-    points = np.concatenate([p.vertices for p in pieces])
+    points = solid_points(pieces)
     extents = np.ptp(points, axis=0)
     # Nearly equal extents keep their order, so that a tie does not turn the object.
     order = np.argsort(-extents.round(5), kind="stable")
@@ -67,10 +72,20 @@ def to_mesh(solid: Solid) -> trimesh.Trimesh:
 
 
 def mass_properties(solid: Solid) -> tuple[float, Array, Array]:
-    """Volume [m^3], centre of mass (3,) [m] and inertia (3, 3) [m^2] of 1 kg, of the union."""
-    import trimesh
+    """Volume [m^3], centre of mass (3,) [m] and inertia (3, 3) [m^2] of 1 kg, of the union.
 
-    meshes = [trimesh.Trimesh(p.vertices, p.faces) for p in solid.pieces]
-    union = trimesh.boolean.union(meshes, engine="manifold") if len(meshes) > 1 else meshes[0]
+    Drawn labels, which no part stands for, do not count.
+    """
+    union = union_mesh([(p.vertices, p.faces) for p in solid.pieces if p.parts])
     volume = float(union.volume)
     return volume, union.center_mass, union.moment_inertia / volume
+
+
+def union_mesh(bodies: Sequence[tuple[Array, NDArray[np.int64]]]) -> trimesh.Trimesh:
+    """One surface around closed bodies (vertices, faces) that may overlap."""
+    import trimesh
+
+    meshes = [trimesh.Trimesh(vertices, faces) for vertices, faces in bodies]
+    if len(meshes) == 1:
+        return meshes[0]
+    return trimesh.boolean.union(meshes, engine="manifold")

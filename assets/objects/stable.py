@@ -46,8 +46,8 @@ def candidate_poses(
     kept: list[tuple[Array, float]] = []  # up direction in the object frame, share
     for transform, share in zip(transforms, shares, strict=True):
         up = transform[2, :3]
-        if _tilt_margin(corners, com, up) < MIN_TILT:
-            continue
+        if _tilt_margin(corners, com, up) < MIN_TILT and kept:
+            continue  # The likeliest pose is always kept: physics has the last word.
         for i, (other, total) in enumerate(kept):
             if _same(up, other, symmetric):
                 kept[i] = (other, total + share)
@@ -55,6 +55,8 @@ def candidate_poses(
         else:
             kept.append((up, float(share)))
     kept = sorted((k for k in kept if k[1] >= MIN_SHARE), key=lambda k: -k[1])[:MAX_POSES]
+    if len(symmetric) == 3 and kept:
+        kept = [(design_to_object[:, 0], 1.0)]  # A ball is shown upright.
     total = sum(share for _, share in kept)
     return _named(
         [

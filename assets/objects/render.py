@@ -1,0 +1,125 @@
+"""Pictures of objects: one with its parts, poses and numbers, and the contact sheet of them all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from maniskill_taskgrasp.assets.objects.actor import add_object
+from maniskill_taskgrasp.assets.objects.geometry import (
+    part_corners,
+    quat_to_matrix,
+)
+from maniskill_taskgrasp.assets.objects.model import ObjectModel, RestingPose
+from maniskill_taskgrasp.assets.objects.recipe import load_recipes
+
+if TYPE_CHECKING:
+    import sapien
+
+Image = NDArray[np.uint8]
+TILE = 200  # [pixel] edge of a contact sheet's picture.
+VIEW = np.array([0.5, -0.66, 0.56])  # Direction from the object to the camera.
+FIELD = 0.35  # [rad] vertical field of view: long, so that shapes are hardly distorted.
+LABEL = 16  # [pixel]
+
+
+class Studio:
+    """A lit scene and a camera, to photograph one object after another."""
+
+    def __init__(self, pixels: int) -> None:
+        import sapien
+
+        self.scene = sapien.Scene()
+        self.scene.set_ambient_light([0.45, 0.45, 0.45])
+        self.scene.add_directional_light([-0.3, 0.6, -1.0], [0.9, 0.9, 0.88], shadow=True)
+        self.scene.add_directional_light([-0.8, -0.2, -0.4], [0.35, 0.35, 0.4])
+        ground = self.scene.create_actor_builder()
+        white = sapien.render.RenderMaterial(base_color=(0.93, 0.93, 0.91, 1), roughness=1.0)
+        ground.add_box_visual(half_size=(3, 3, 0.005), material=white)
+        ground.set_initial_pose(sapien.Pose([0, 0, -0.005]))
+        ground.build_static("ground")
+        self.camera = self.scene.add_camera("camera", pixels, pixels, FIELD, 0.01, 20)
+
+    def photograph(self, entities: Sequence[sapien.Entity], corners: NDArray[np.float64]) -> Image:
+        """(pixels, pixels, 3) picture that holds all corners (n, 3) [m]; entities are removed."""
+        import sapien
+
+        ahead = -VIEW / np.linalg.norm(VIEW)
+        left = np.cross([0, 0, 1], ahead)
+        left /= np.linalg.norm(left)
+        axes = np.stack([ahead, left, np.cross(ahead, left)], axis=1)
+        seen = corners @ axes
+        middle = (seen.min(0) + seen.max(0)) / 2
+        reach = float(np.ptp(seen[:, 1:], axis=0).max()) / 2 * 1.12
+        back = reach / np.tan(FIELD / 2) + float(np.ptp(seen[:, 0])) / 2
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = axes, axes @ middle - ahead * back
+        self.camera.entity.set_pose(sapien.Pose(pose))
+        self.scene.update_render()
+        self.camera.take_picture()
+        picture = self.camera.get_picture("Color")[..., :3]
+        for entity in entities:
+            self.scene.remove_entity(entity)
+        return (picture.clip(0, 1) * 255).astype(np.uint8)
+
+
+def pose_shown(model: ObjectModel) -> RestingPose:
+    """The resting pose in which the object is easiest to recognise."""
+    a, b, c = model.extents_m
+    recipe = load_recipes().get(model.name) if model.split != "imported" else None
+    if recipe is not None and recipe.shown:
+        wanted = recipe.shown
+    elif c < 0.5 * b or (a > 2.4 * b and model.category not in ("bottles", "kitchen")):
+        wanted = "lying"
+    else:
+        wanted = "standing"
+    by_name = {pose.name: pose for pose in reversed(model.resting_poses)}
+    for name in (wanted, "standing", "lying"):
+        if name in by_name:
+            return by_name[name]
+    return model.resting_poses[0]
+
+
+def object_picture(studio: Studio, model: ObjectModel, pose: RestingPose) -> Image:
+    """The object in a pose on a white ground, its x axis to the right."""
+    import sapien
+
+    builder = studio.scene.create_actor_builder()
+    add_object(builder, model, visual=True)
+    rotation = _x_right(quat_to_matrix(pose.quat_wxyz))
+    corners = np.concatenate([part_corners(p) for p in model.parts]) @ rotation.T
+    lift = -corners[:, 2].min()
+    frame = np.eye(4)
+    frame[:3, :3], frame[2, 3] = rotation, lift
+    builder.set_initial_pose(sapien.Pose(frame))
+    return studio.photograph([builder.build("object")], corners + np.array([0, 0, lift]))
+
+
+def _x_right(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rotation turned about the vertical so that the x axis, if level, lies along world x."""
+    ahead = rotation[:2, 0]
+    if np.linalg.norm(ahead) < 0.5:
+        return rotation
+    c, s = ahead / np.linalg.norm(ahead)
+    return np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ rotation
+
+
+def contact_sheet(models: Sequence[ObjectModel], path: Path, columns: int = 14) -> None:
+    """Picture file of all models in their most telling pose, with names below."""
+    from PIL import Image as Pillow
+    from PIL import ImageDraw
+
+    studio, rows = Studio(TILE), -(-len(models) // columns)
+    sheet = Pillow.new("RGB", (columns * TILE, rows * (TILE + LABEL)), "white")
+    draw = ImageDraw.Draw(sheet)
+    for index, model in enumerate(models):
+        corner = (index % columns * TILE, index // columns * (TILE + LABEL))
+        picture = object_picture(studio, model, pose_shown(model))
+        sheet.paste(Pillow.fromarray(picture), corner)
+        draw.text((corner[0] + TILE // 2, corner[1] + TILE), model.name, "black", anchor="ma")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    sheet.save(path, optimize=True)
