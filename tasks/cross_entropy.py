@@ -31,6 +31,7 @@ def cross_entropy(
     *,
     population: int,
     generations: int,
+    first: int = 1,
     elite: float = 0.15,
 ) -> tuple[Array, Array]:
     """Maximise a noisy score.
@@ -38,6 +39,7 @@ def cross_entropy(
     Args:
         score: (population, dims) candidates -> (population,) scores.
         start: (dims,) centre of the first generation.
+        first: populations in the first generation; a wide look keeps out of bad basins.
 
     Returns:
         (dims,) mean of the best generation's elite, and every candidate with its score,
@@ -46,12 +48,16 @@ def cross_entropy(
     mean, spread, history = start.copy(), space.spread.copy(), []
     best_mean, best_value = mean, -np.inf
     count = max(4, int(elite * population))
-    for _ in range(generations):
-        candidates = rng.normal(mean, spread, (population, len(mean)))
-        candidates[0] = mean
-        candidates = candidates.clip(space.lower, space.upper)
-        values = score(candidates)
-        history.append(np.column_stack([candidates, values]))
+    for generation in range(generations):
+        looks = []
+        for _ in range(first if generation == 0 else 1):
+            batch = rng.normal(mean, spread, (population, len(mean)))
+            batch[0] = mean
+            batch = batch.clip(space.lower, space.upper)
+            looks.append(np.column_stack([batch, score(batch)]))
+        tried = np.concatenate(looks)
+        candidates, values = tried[:, :-1], tried[:, -1]
+        history.append(tried)
         top = candidates[np.argsort(-values, kind="stable")[:count]]
         value = float(np.sort(values)[-count:].mean())
         mean = 0.2 * mean + 0.8 * top.mean(0)

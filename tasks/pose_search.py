@@ -18,13 +18,14 @@ from maniskill_taskgrasp.topology import Topology
 Array = NDArray[np.float64]
 
 EARLY_STEPS = LIFT_START + 14  # Early generations stop here: a lost object is lost by then.
+OFF_GROUND = 0.05  # [m] rise that earns the score of a lift-off.
 EARLY_LIFT = 0.06  # [m] rise that a held object has reached by then.
 CENTRE_SHIFT = 0.03  # [m] sideways push while closing that costs a full point of the score.
 
 # Numbers that are searched: six of the pregrasp, then eight of the posture.
 PREGRASP_LOWER = (-0.09, -0.01, -0.05, -0.35, -1.75, -1.75)
 PREGRASP_UPPER = (0.05, 0.13, 0.11, 0.80, 1.75, 1.75)
-PREGRASP_SPREAD = (0.018, 0.018, 0.018, 0.25, 0.25, 0.12)
+PREGRASP_SPREAD = (0.018, 0.022, 0.022, 0.28, 0.25, 0.12)
 PREGRASP_FLOOR = (0.0015, 0.0015, 0.0015, 0.02, 0.02, 0.02)
 POSTURE_SPREAD = (0.12, 0.20, 0.08, 0.25, 0.15, 0.25, 0.25, 0.35)
 POSTURE_FLOOR = (0.01,) * 8
@@ -79,12 +80,16 @@ class PostureSpace:
 
     def start(self) -> Array:
         """(8,) the hand's own posture."""
+        return self.compress(self.preshape, self.closing)
+
+    def compress(self, preshape: Array, closing: Array) -> Array:
+        """(8,) numbers of a posture pair, each (num_actuators,) [rad]."""
         fingers = [
             float(np.mean([side[i + joint] for i in self._moving])) if self._moving else 0.5
-            for side in (self.preshape, self.closing)
+            for side in (preshape, closing)
             for joint in (0, 1)
         ]
-        thumb = [self.preshape[0], self.closing[0], self.preshape[1], self.closing[1]]
+        thumb = [preshape[0], closing[0], preshape[1], closing[1]]
         return np.clip([*thumb, *fingers], self.lower, self.upper)
 
     def expand(self, numbers: Array) -> tuple[Array, Array]:
@@ -162,7 +167,8 @@ class GraspTrials:
         reach = env.outcome.reachable.cpu().numpy()
         lifted = info["success"].cpu() if whole else info["lift"].cpu() >= EARLY_LIFT
         form = lifted & info["fidelity"].cpu()
-        guide = 2.0 * form + lifted.float() + 0.5 * (lift / 0.2).clamp(0, 1) + closed
+        rise = (lift / OFF_GROUND).clamp(0, 1)
+        guide = 2.0 * form + lifted.float() + rise + closed
         score = np.where(reach, guide.numpy(), -1.0)
         return lifted.numpy() & reach, form.numpy() & reach, score
 
@@ -172,7 +178,7 @@ class GraspTrials:
         touching = (info["part_forces"].cpu() >= 0.05) & self._named
         contact = touching.sum(1) / self._named.sum()
         pushed = (env.obj.pose.p - env.nominal_pose[:, :3])[:, :2].norm(dim=1).cpu()
-        promise = 0.5 * info["fidelity"].cpu() + 0.4 * contact
+        promise = 0.4 * info["fidelity"].cpu() + 0.4 * contact
         return promise - 0.2 * (pushed / CENTRE_SHIFT).clamp(max=1)
 
     def close(self) -> None:

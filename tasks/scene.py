@@ -74,7 +74,7 @@ def _build_fixture(scene: ManiSkillScene, env: int, placement: Placement) -> Non
 
 def render_camera() -> CameraConfig:
     """Looks at the object and the hand from the front left, the arm behind them."""
-    pose = sapien_utils.look_at([0.75, 0.55, 0.45], [-0.08, 0.0, 0.14])
+    pose = sapien_utils.look_at([0.62, 0.46, 0.36], [-0.06, 0.0, 0.15])
     return CameraConfig("render_camera", pose, 640, 480, 0.9, 0.01, 100)
 
 

@@ -35,6 +35,9 @@ from maniskill_taskgrasp.tasks.pose_search import (
 from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
 
 Array = NDArray[np.float64]
+GOOD_START = 0.5  # Success in lift and form from which a grasp may start another search.
+LOW = 0.04  # [m] lying objects lower than this want the fingertips below them.
+SCOOP = np.array([0.0, -0.012, 0.0, 0.2, 0.0, 0.0])  # Palm lower and fingers down (facts, 3).
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 
 
@@ -52,6 +55,8 @@ class PregraspConfig:
     num_envs: int = 64
     """Candidates a generation."""
     generations: int = 9
+    first: int = 3
+    """Populations in the first generation of a search that starts from the rule."""
     final: int = 2
     """Generations of them that run to the end of the clock."""
     noise: str = "paper"
@@ -94,24 +99,45 @@ def pairs(config: PregraspConfig) -> Iterator[tuple[Topology, str]]:
         yield from (pair for pair in row if pair is not None)
 
 
-def search(topology: Topology, obj: str, config: PregraspConfig) -> Grasp:
+def first_guess(
+    trials: GraspTrials, topology: Topology, posture: PostureSpace, done: list[Grasp]
+) -> tuple[Array, float, int]:
+    """Where a search starts, its spread and the generations it may skip.
+
+    A good grasp of the same topology on another object is a better start than the rule.
+    """
+    placement = trials.env.placements[0]
+    known = [g for g in done if g.topology == topology.slug and g.both >= GOOD_START]
+    if known:
+        near = min(known, key=lambda grasp: grasp.mismatch(placement))
+        numbers = posture.compress(np.array(near.preshape), np.array(near.closing))
+        return np.concatenate([near.pregrasp, numbers]), 0.7, 2
+    rule = trials.env.planner.bounding_box(topology.slug, placement).numpy()
+    if placement.extents[2] < LOW:
+        rule += SCOOP
+    return np.concatenate([rule, posture.start()]), 1.0, 0
+
+
+def search(topology: Topology, obj: str, config: PregraspConfig, done: list[Grasp]) -> Grasp:
     """Search one pair; the figures stored are of fresh trials."""
     trials = GraspTrials(obj, topology, config.presentation, config.noise, config.num_envs)
     placement = trials.env.placements[0]
     posture = PostureSpace.of(AR10, topology)
+    start, spread, skipped = first_guess(trials, topology, posture, done)
+    generations = config.generations - skipped
     space = SearchSpace(
         lower=np.concatenate([PREGRASP_LOWER, posture.lower]),
         upper=np.concatenate([PREGRASP_UPPER, posture.upper]),
-        spread=np.concatenate([PREGRASP_SPREAD, POSTURE_SPREAD]),
+        spread=spread * np.concatenate([PREGRASP_SPREAD, POSTURE_SPREAD]),
         floor=np.concatenate([PREGRASP_FLOOR, POSTURE_FLOOR]),
     )
-    rule = trials.env.planner.bounding_box(topology.slug, placement).numpy()
-    start = np.concatenate([rule, posture.start()])
+    wide = 1 if skipped else config.first
+    evaluations = generations + wide - 1
     generation = itertools.count()
 
     def score(candidates: Array) -> Array:
         number = next(generation)
-        whole = number >= config.generations - config.final
+        whole = number >= evaluations - config.final
         shapes = posture.expand(candidates[:, 6:])
         seed = config.seed + 1000 * (number + 1)
         return trials.run(candidates[:, :6], *shapes, seed, whole=whole)[2]
@@ -122,7 +148,8 @@ def search(topology: Topology, obj: str, config: PregraspConfig) -> Grasp:
         space,
         np.random.default_rng(config.seed),
         population=config.num_envs,
-        generations=config.generations,
+        generations=generations,
+        first=wide,
     )
     preshape, closing = posture.expand(np.tile(best[6:], (config.num_envs, 1)))
     lifted, both, _ = trials.run(
@@ -152,7 +179,7 @@ def main(config: PregraspConfig) -> None:
     for topology, obj in pairs(config):
         if (topology.slug, obj) in have:
             continue
-        grasp = search(topology, obj, config)
+        grasp = search(topology, obj, config, done)
         print(
             f"{topology.name:24s} {obj:28s} {grasp.presentation:6s} "
             f"lift {grasp.lift:.2f} both {grasp.both:.2f}",
