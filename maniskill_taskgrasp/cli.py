@@ -249,11 +249,51 @@ class Objects:
         self.command.run()
 
 
+@dataclass(frozen=True, kw_only=True)
+class DataFetch(Output):
+    """Get the authors' data set: download it, or take a local copy; its sha256 is checked."""
+
+    from_: Annotated[Path | None, tyro.conf.arg(name="from")] = None
+    """A copy you have already."""
+
+    def run(self) -> None:
+        """Print where the file is."""
+        from maniskill_taskgrasp.selection.fetch import fetch
+
+        _print_facts(fetch(self.from_), self.json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DataCheck(Output):
+    """Check the data set that was fetched, or another copy."""
+
+    path: Positional[Path | None] = None
+    """The file; the fetched one where it is left out."""
+
+    def run(self) -> None:
+        """Print path, sha256 and rows."""
+        from maniskill_taskgrasp.selection.fetch import check
+
+        _print_facts(check(self.path), self.json)
+
+
+@dataclass(frozen=True)
+class Data:
+    """The authors' data set, which training needs and use does not: fetch, check."""
+
+    command: Annotated[DataFetch, subcommand("fetch")] | Annotated[DataCheck, subcommand("check")]
+
+    def run(self) -> None:
+        """Run the chosen command."""
+        self.command.run()
+
+
 Command = (
     Annotated[Grasp, subcommand("grasp")]
     | Annotated[Select, subcommand("select")]
     | Annotated[Topologies, subcommand("topologies")]
     | Annotated[Objects, subcommand("objects")]
+    | Annotated[Data, subcommand("data")]
 )
 
 
