@@ -21,7 +21,7 @@ from maniskill_taskgrasp.agents.controllers.joint_synergy import JointSynergyCon
 from maniskill_taskgrasp.agents.controllers.palm_motion import PalmResidualController
 from maniskill_taskgrasp.agents.hand import HandDescription
 from maniskill_taskgrasp.agents.sawyer_ar10.control_modes import ARM_JOINTS, control_modes
-from maniskill_taskgrasp.agents.sawyer_ar10.description import PART_PRIMITIVES
+from maniskill_taskgrasp.agents.sawyer_ar10.description import PART_PRIMITIVES, SAWYER_AR10
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.topology import TOPOLOGIES
 
@@ -120,12 +120,13 @@ class SawyerAR10(BaseAgent):
         ]
 
     def _after_loading_articulation(self) -> None:
-        hand_joints = {*self.hand.actuators, *(c.joint for c in self.hand.couplings)}
-        for articulation in self.robot._objs:
-            for joint in articulation.active_joints:
-                if joint.name in hand_joints:
-                    joint.set_armature(np.full((joint.dof, 1), self.hand.armature, np.float32))
-                    joint.set_max_velocity(self.hand.speed_limit)
+        """Reflected inertia of the hand's motors, and the speed that each joint cannot exceed."""
+        hand = {*self.hand.actuators, *(c.joint for c in self.hand.couplings)}
+        for name, joint in self.robot.active_joints_map.items():
+            for own in joint._objs:  # Their own names carry the number of their environment.
+                if name in hand:
+                    own.set_armature(np.array([self.hand.armature], dtype=np.float32))
+                own.set_max_velocity(SAWYER_AR10.joint(name).velocity)
 
     def _after_init(self) -> None:
         self.tcp = self.robot.links_map[self.hand.palm_frame]
