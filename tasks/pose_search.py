@@ -10,6 +10,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from maniskill_taskgrasp.agents.fidelity import ContactSurfaces
 from maniskill_taskgrasp.agents.hand import PARTS, HandDescription
 from maniskill_taskgrasp.episode import LIFT_START, MAX_EPISODE_STEPS
 from maniskill_taskgrasp.tasks.closing import ConstantClosing
@@ -135,6 +136,10 @@ class GraspTrials:
         self.num_envs = num_envs
         self._policy = ConstantClosing(self.env)
         self._named = torch.tensor([p in topology.parts for p in PARTS])
+        self._precise = topology.pip == "Precision" and topology.opposition == "Pad"
+        hand = self.env.agent.hand
+        links = [link for part in PARTS for link in hand.part_links[part]]
+        self._surfaces = ContactSurfaces(hand, links, self.env.device)
 
     def run(
         self, pregrasp: Array, preshape: Array, closing: Array, seed: int, *, whole: bool
@@ -168,7 +173,7 @@ class GraspTrials:
         lifted = info["success"].cpu() if whole else info["lift"].cpu() >= EARLY_LIFT
         form = lifted & info["fidelity"].cpu()
         rise = (lift / OFF_GROUND).clamp(0, 1)
-        guide = 2.0 * form + lifted.float() + rise + closed
+        guide = 2.0 * form + lifted.float() + rise * (1 + self._likeness()) + closed
         score = np.where(reach, guide.numpy(), -1.0)
         return lifted.numpy() & reach, form.numpy() & reach, score
 
@@ -180,6 +185,18 @@ class GraspTrials:
         pushed = (env.obj.pose.p - env.nominal_pose[:, :3])[:, :2].norm(dim=1).cpu()
         promise = 0.4 * info["fidelity"].cpu() + 0.4 * contact
         return promise - 0.2 * (pushed / CENTRE_SHIFT).clamp(max=1)
+
+    def _likeness(self) -> torch.Tensor:
+        """(num_envs,) in [0, 1]: how near the contacts are to the named topology.
+
+        Share of all force that the named parts carry on the right surface, times the share of
+        named parts that touch; unlike the yes or no of the form, a search can climb it.
+        """
+        shares = self._surfaces.shares(self.env.outcome.mean_forces)
+        right = torch.minimum(shares.good, shares.distal) if self._precise else shares.good
+        right = torch.where(self._named, right, 0.0).cpu().sum(1)
+        touching = ((shares.force.cpu() >= 0.05) & self._named).sum(1) / self._named.sum()
+        return touching * right / shares.force.cpu().sum(1).clamp(min=1e-6)
 
     def close(self) -> None:
         """Free the simulation."""

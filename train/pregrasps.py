@@ -37,7 +37,7 @@ from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
 Array = NDArray[np.float64]
 GOOD_START = 0.5  # Success in lift and form from which a grasp may start another search.
 LOW = 0.04  # [m] lying objects lower than this want the fingertips below them.
-SCOOP = np.array([0.0, -0.012, 0.0, 0.2, 0.0, 0.0])  # Palm lower and fingers down (facts, 3).
+SCOOP = np.array([0.0, -0.018, 0.0, 0.25, 0.0, 0.0])  # Palm lower and fingers down (facts, 3).
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 
 
