@@ -107,27 +107,28 @@ class ArmIK:
         position = (position - self._root_position) @ self._root_rotation
         rotation = self._root_rotation.T @ rotation
         for _ in range(iterations):
-            error = self._error(qpos, position, rotation)
-            jacobian = self._kinematics.jacobian(self._full(qpos), self._palm_link)
-            step = joint_step(jacobian[:, :, self._arm], error)
+            pose, jacobian = self._kinematics.pose_and_jacobian(self._full(qpos), self._palm_link)
+            step = joint_step(jacobian[:, :, self._arm], _twist(pose, position, rotation))
             qpos = qpos + step.clamp(-MAX_STEP, MAX_STEP)
             qpos = qpos.clamp(self._qlimits[:, 0], self._qlimits[:, 1])
-        error = self._error(qpos, position, rotation)
+        poses = self._kinematics.link_matrices(self._full(qpos))
+        pose = poses[:, self._kinematics.link_index(self._palm_link)]
+        error = _twist(pose, position, rotation)
         ok = (error[:, :3].norm(dim=1) <= POSITION_TOLERANCE) & (
             error[:, 3:].norm(dim=1) <= ROTATION_TOLERANCE
         )
         return qpos, ok
 
-    def _error(self, qpos: Tensor, position: Tensor, rotation: Tensor) -> Tensor:
-        """(n, 6) [m, rad] twist from the palm's pose to the wanted one, base frame."""
-        pose = self._kinematics.link_pose(self._full(qpos), self._palm_link)
-        turn = rotation @ quat_to_matrix(pose[:, 3:]).transpose(1, 2)
-        return torch.cat([position - pose[:, :3], rotation_vector(turn)], 1)
-
     def _full(self, qpos: Tensor) -> Tensor:
         full = qpos.new_zeros(len(qpos), self._kinematics.dof)
         full[:, self._arm] = qpos
         return full
+
+
+def _twist(pose: Tensor, position: Tensor, rotation: Tensor) -> Tensor:
+    """(n, 6) [m, rad] from a pose (n, 4, 4) to a position (n, 3) and rotation (n, 3, 3)."""
+    turn = rotation @ pose[:, :3, :3].transpose(1, 2)
+    return torch.cat([position - pose[:, :3, 3], rotation_vector(turn)], 1)
 
 
 def resample(path: Tensor, steps: int) -> Tensor:
