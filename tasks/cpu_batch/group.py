@@ -33,8 +33,15 @@ class EnvGroup:
     determinism, and offsets round positions.
     """
 
-    def __init__(self, scenes: Sequence[sapien.Scene]):
-        self.scenes = list(scenes)
+    def __init__(self, all_scenes: list[sapien.Scene], envs: range):
+        """
+        Args:
+            all_scenes: one for each environment there is; `forget` replaces them in this list.
+            envs: those of this group.
+        """
+        self._all_scenes = all_scenes
+        self._first_env = envs.start
+        self.scenes = scenes = all_scenes[envs.start : envs.stop]
         self.systems: list[physx.PhysxCpuSystem] = [s.physx_system for s in scenes]
         self.bodies: list[Any] = []
         self.articulations: list[physx.PhysxArticulation] = []
@@ -198,18 +205,26 @@ class EnvGroup:
     # Writing: each takes rows of the buffers into the simulation ---------------------------------
 
     def forget(self, envs: Sequence[int]) -> None:
-        """Rid environments of what PhysX remembers beside their state.
+        """Rid environments of what PhysX remembers beside their state, by moving house.
 
-        Contact caches and wake counters survive new poses, so that an episode would depend on the
-        one before. Taking all bodies out of the scene and putting them back drops them; taking out
-        in reverse order gives every body its old internal number back.
+        Contact caches and internal orders survive new poses, so that an episode would depend on
+        the ones before it; even taking the bodies out and putting them back leaves traces.
         """
+        before = physx.get_scene_config()
         for env in envs:
-            rows = np.nonzero(self.body_env == env)[0].tolist()
-            for row in reversed(rows):
-                self.bodies[row].disable()
-            for row in rows:
-                self.bodies[row].enable()
+            old_scene, old_system = self.scenes[env], self.systems[env]
+            physx.set_scene_config(old_system.config)
+            system = physx.PhysxCpuSystem()
+            system.timestep = old_system.timestep
+            scene = sapien.Scene([system])
+            entities = old_scene.entities
+            for entity in entities:
+                entity.remove_from_scene()
+            for entity in entities:
+                scene.add_entity(entity)
+            self.systems[env] = system
+            self.scenes[env] = self._all_scenes[self._first_env + env] = scene
+        physx.set_scene_config(before)
         self._contacts.clear(envs)
 
     def write_dynamic(self, rows: Sequence[int]) -> None:

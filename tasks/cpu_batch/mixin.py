@@ -140,18 +140,13 @@ class CpuBatchMixin(Base):
     @contextmanager
     def _rewriting(self, envs: Any) -> Iterator[None]:
         """These environments (None: all) are written whole, even where a value stays the same."""
-        if not self._cpu_batched or self.scene is None:
-            yield
-            return
-        system = self.scene.px
-        if not system.ready:
-            yield
-            return
-        system.begin_rewrite(slice(None) if envs is None else np.asarray(envs))
+        if self._cpu_batched and self.scene is not None:
+            self.scene.px.begin_rewrite(slice(None) if envs is None else np.asarray(envs))
         try:
             yield
         finally:
-            system.end_rewrite()
+            if self._cpu_batched and self.scene is not None:  # May have been built meanwhile.
+                self.scene.px.end_rewrite()
 
     def _step_action(self, action: Any) -> Any:
         check_action(action, self.agent, self.num_envs)

@@ -26,7 +26,7 @@ class BatchedCpuScene(ManiSkillScene):
     def __init__(self, num_envs: int, processes: int, **kwargs: Any):
         scenes = [sapien.Scene([physx.PhysxCpuSystem()]) for _ in range(num_envs)]
         super().__init__(scenes, **kwargs)
-        self.px = BatchedCpuSystem(scenes, processes)
+        self.px = BatchedCpuSystem(self.sub_scenes, processes)
         self.gpu_sim_enabled = True
         self._waiting: list[BaseStruct] = []  # Structs built before the buffers exist.
 
@@ -39,6 +39,9 @@ class BatchedCpuScene(ManiSkillScene):
         for struct in self._waiting:
             self._number(struct)
         self._waiting.clear()
+        # The first episode starts from a fresh system like all others; the reset that is under way
+        # ends the rewriting.
+        self.px.begin_rewrite(slice(None))
         super()._setup(enable_gpu)
 
     def adopt(self, struct: BaseStruct) -> None:

@@ -68,14 +68,13 @@ class BatchedCpuSystem:
     # ManiSkill asks `isinstance(scene.px, PhysxGpuSystem)`, and Python also asks this attribute.
     __class__ = property(lambda _: physx.PhysxGpuSystem)  # type: ignore[assignment]
 
-    def __init__(self, scenes: Sequence[sapien.Scene], processes: int = 1):
+    def __init__(self, scenes: list[sapien.Scene], processes: int = 1):
         """
         Args:
-            scenes: one for each environment, with its own PhysX system.
+            scenes: one for each environment, with its own PhysX system; replaced as they are reset.
             processes: how many share the physics, this one included.
         """
-        self.scenes = list(scenes)
-        self.systems: list[physx.PhysxCpuSystem] = [s.physx_system for s in scenes]
+        self.scenes = scenes
         self.ready = False
         self._processes = processes
         self._pending = 0  # Steps asked for and not yet taken.
@@ -86,7 +85,7 @@ class BatchedCpuSystem:
     @property
     def timestep(self) -> float:
         """[s] of one physics step."""
-        return self.systems[0].timestep
+        return self.scenes[0].physx_system.timestep
 
     @timestep.setter
     def timestep(self, seconds: float) -> None:
@@ -94,9 +93,14 @@ class BatchedCpuSystem:
             system.timestep = seconds
 
     @property
+    def systems(self) -> list[physx.PhysxCpuSystem]:
+        """One for each environment."""
+        return [scene.physx_system for scene in self.scenes]
+
+    @property
     def config(self) -> physx.PhysxSceneConfig:
         """Settings that all the systems share."""
-        return self.systems[0].config
+        return self.scenes[0].physx_system.config
 
     @property
     def rigid_dynamic_components(self) -> list[Any]:
@@ -172,7 +176,7 @@ class BatchedCpuSystem:
         bounds = np.linspace(0, len(self.scenes), self._processes + 1).round().astype(int)
         shares, bodies, articulations = [], 0, 0
         for first, stop in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
-            group = EnvGroup(self.scenes[first:stop])
+            group = EnvGroup(self.scenes, range(first, stop))
             rows = range(bodies, bodies + len(group.bodies))
             joints = range(articulations, articulations + len(group.articulations))
             shares.append(Share(group, group, range(first, stop), rows, joints))
