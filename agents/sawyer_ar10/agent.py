@@ -21,7 +21,7 @@ from maniskill_taskgrasp.agents.controllers.joint_synergy import JointSynergyCon
 from maniskill_taskgrasp.agents.controllers.palm_motion import PalmResidualController
 from maniskill_taskgrasp.agents.hand import HandDescription
 from maniskill_taskgrasp.agents.sawyer_ar10.control_modes import ARM_JOINTS, control_modes
-from maniskill_taskgrasp.agents.sawyer_ar10.description import PART_PRIMITIVES, SAWYER_AR10
+from maniskill_taskgrasp.agents.sawyer_ar10.description import PART_PRIMITIVES
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.topology import TOPOLOGIES
 
@@ -120,13 +120,15 @@ class SawyerAR10(BaseAgent):
         ]
 
     def _after_loading_articulation(self) -> None:
-        """Reflected inertia of the hand's motors, and the speed that each joint cannot exceed."""
-        hand = {*self.hand.actuators, *(c.joint for c in self.hand.couplings)}
-        for name, joint in self.robot.active_joints_map.items():
-            for own in joint._objs:  # Their own names carry the number of their environment.
-                if name in hand:
-                    own.set_armature(np.array([self.hand.armature], dtype=np.float32))
-                own.set_max_velocity(SAWYER_AR10.joint(name).velocity)
+        """Reflected inertia of the hand's motors.
+
+        Speeds are limited by the commands: PhysX's own limit of a joint's velocity also eats the
+        forces that the joint passes on (a pinch of 10 N fell to 0.5 N).
+        """
+        armature = np.array([self.hand.armature], dtype=np.float32)
+        for name in (*self.hand.actuators, *(c.joint for c in self.hand.couplings)):
+            for joint in self.robot.active_joints_map[name]._objs:
+                joint.set_armature(armature)
 
     def _after_init(self) -> None:
         self.tcp = self.robot.links_map[self.hand.palm_frame]
