@@ -14,8 +14,13 @@ from maniskill_taskgrasp.assets.objects.geometry import (
 )
 from maniskill_taskgrasp.assets.objects.model import ObjectModel
 from maniskill_taskgrasp.assets.objects.presentation import Presentation, present
+from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.topology import Topology
 
 Array = NDArray[np.float64]
+
+PAD_ROOM = 0.03  # [m] lower objects are raised: pads meet below the middle (facts: grasping, 3).
+PALM_ROOM = 0.05  # [m] lower objects are raised: the fingers' ends pass below the object.
 
 
 @dataclass(frozen=True)
@@ -39,17 +44,54 @@ class Placement:
     """(7,) [m, wxyz] of the presentation's frame."""
 
 
-def place(model: ObjectModel, presentation: str = "auto", rest: int = 0) -> Placement:
+def suited(model: ObjectModel, topology: Topology, rest: int = 0) -> Presentation:
+    """The object as this topology can take it; the rule for presentation "auto".
+
+    Fingers that close below an object need room there, and a palm that shall touch it even more;
+    side types pinch what stands: flat things on edge, rods upright. Where a stand cannot hold the
+    object, or the table will do, the object's own rule decides (`presentation.choose`).
+    """
+    if topology.opposition == "Side":
+        wanted = "holder" if "middle" in topology.parts and "thumb" in topology.parts else "rack"
+    else:
+        wanted = "stand"
+        shown = present(model, "auto", rest)
+        low = PALM_ROOM if topology.opposition == "Palm" else PAD_ROOM
+        if shown.kind != "table" or _height(model, shown) >= low:
+            return shown
+    try:
+        return present(model, wanted, rest)
+    except InputError:
+        return present(model, "auto", rest)
+
+
+def _height(model: ObjectModel, shown: Presentation) -> float:
+    """[m] vertical extent of the object as it is shown."""
+    up = quat_to_matrix(shown.quat_wxyz)[2]
+    return float(np.ptp(np.concatenate([part_corners(part) for part in model.parts]) @ up))
+
+
+def place(
+    model: ObjectModel,
+    presentation: str = "auto",
+    rest: int = 0,
+    topology: Topology | None = None,
+) -> Placement:
     """Put an object in front of the robot.
 
     Args:
-        presentation: see `assets.objects.presentation.present`.
+        presentation: see `assets.objects.presentation.present`; "auto" asks `suited` where a
+            topology is given.
         rest: which of the object's resting poses.
+        topology: how it will be grasped, if that is known.
 
     Raises:
         InputError: unknown presentation, or one that cannot hold the object.
     """
-    shown = present(model, presentation, rest)
+    if presentation == "auto" and topology is not None:
+        shown = suited(model, topology, rest)
+    else:
+        shown = present(model, presentation, rest)
     rotation = quat_to_matrix(shown.quat_wxyz)
     corners = np.concatenate([part_corners(part) for part in model.parts])
     width = np.ptp(corners @ rotation.T, axis=0)

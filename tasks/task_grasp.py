@@ -171,7 +171,8 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         # One environment draws an object; many share the list out between them.
         index = draw % len(self.object_names) if self.num_envs == 1 else env
         name = self.object_names[index % len(self.object_names)]
-        return place(library.load(name), self._presentation)
+        topology = self.topologies[env % len(self.topologies)]
+        return place(library.load(name), self._presentation, topology=topology)
 
     def _randomize_physics(self) -> None:
         """Friction and mass of each environment's object, set before the first physics step."""

@@ -14,10 +14,13 @@ from pathlib import Path
 import numpy as np
 import tyro
 from numpy.typing import NDArray
+from scipy.cluster.vq import kmeans2
 
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.assets.objects import library
+from maniskill_taskgrasp.assets.objects.presentation import KINDS
 from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.selection.feasibility import feasible
 from maniskill_taskgrasp.tasks.cross_entropy import SearchSpace, cross_entropy
 from maniskill_taskgrasp.tasks.grasp_library import Grasp, dump_grasps
@@ -48,7 +51,7 @@ class PregraspConfig:
     topologies: tuple[str, ...] = ()
     """Which topologies; all where it is left out."""
     objects: tuple[str, ...] = ()
-    """Which train objects; left out, the most different ones that suit the topology."""
+    """Which train objects; left out, the most typical ones that suit the topology."""
     per_topology: int = 6
     """How many objects a topology, where they are not named."""
     presentation: str = "auto"
@@ -71,14 +74,35 @@ class PregraspConfig:
                 raise InputError(f"{name!r} is a test object; grasps are searched on train objects")
 
 
-def spread_out(names: list[str], count: int) -> list[str]:
-    """The `count` objects whose placed sizes differ most: farthest-point order from the median."""
-    features = np.log([place(library.load(name)).extents for name in names])
-    chosen = [int(np.argmin(np.linalg.norm(features - np.median(features, 0), axis=1)))]
-    while len(chosen) < min(count, len(names)):
-        gaps = np.linalg.norm(features[:, None] - features[chosen][None], axis=-1).min(1)
-        chosen.append(int(gaps.argmax()))
-    return [names[i] for i in chosen]
+def suitable(topology: Topology) -> list[str]:
+    """Train objects that the hand can hold so, and that people were seen to hold so."""
+    human = {
+        obj
+        for (obj, _), counts in load_knowledge().pair_counts.items()
+        if counts[topology.index] > 0
+    }
+    able = [
+        name
+        for name in library.names("train")
+        if feasible(topology, library.load(name).affordance)[0]
+    ]
+    return [name for name in able if name in human] or able
+
+
+def typical(names: list[str], count: int, topology: Topology) -> list[str]:
+    """The most typical objects: nearest to the centres of `count` clusters of placed sizes."""
+    if len(names) <= count:
+        return names
+    placed = [place(library.load(name), topology=topology) for name in names]
+    # Along the object (y) its size matters little; a stand of its own is a class of its own.
+    scale = np.array([1.0, 0.25, 0.7])
+    features = np.array(
+        [[*(scale * np.log(p.extents)), float(KINDS.index(p.presentation.kind))] for p in placed]
+    )
+    centres, owner = kmeans2(features, count, minit="++", rng=np.random.default_rng(0))
+    order = np.argsort(-np.bincount(owner, minlength=count), kind="stable")
+    nearest = [int(np.linalg.norm(features - centres[i], axis=1).argmin()) for i in order]
+    return [names[i] for i in dict.fromkeys(nearest)]
 
 
 def pairs(config: PregraspConfig) -> Iterator[tuple[Topology, str]]:
@@ -88,12 +112,7 @@ def pairs(config: PregraspConfig) -> Iterator[tuple[Topology, str]]:
     for topology in wanted:
         names = list(config.objects)
         if not names:
-            suits = [
-                name
-                for name in library.names("train")
-                if feasible(topology, library.load(name).affordance)[0]
-            ]
-            names = spread_out(suits, config.per_topology) if suits else []
+            names = typical(suitable(topology), config.per_topology, topology)
         lists.append([(topology, name) for name in names])
     for row in itertools.zip_longest(*lists):
         yield from (pair for pair in row if pair is not None)
