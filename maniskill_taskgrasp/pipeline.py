@@ -170,7 +170,7 @@ class Pipeline:
         topology = choose_topology(selection, options.topology)
         from maniskill_taskgrasp.tasks.rollout import roll_out
 
-        make_policy, env_kwargs = _policy(options.policy)
+        make_policy, env_kwargs = policy_maker(options.policy)
         rollout = roll_out(
             options.object or selection.object,
             topology,
@@ -217,7 +217,7 @@ def choose_topology(selection: Selection, wanted: str | None) -> Topology:
     )
 
 
-def _policy(name: str) -> tuple[Callable[[Any], Any], dict[str, Any]]:
+def policy_maker(name: str) -> tuple[Callable[[Any], Any], dict[str, Any]]:
     """Maker of a policy for an environment, and the arguments the environment must have."""
     from functools import partial
 
