@@ -1,4 +1,4 @@
-"""Rows condensed to what is learned from: distinct inputs and how often each grasp was seen."""
+"""Rows condensed to what is learned from: (object, action) pairs and their topology counts."""
 
 from __future__ import annotations
 
@@ -7,44 +7,38 @@ from dataclasses import dataclass
 import numpy as np
 
 from maniskill_taskgrasp.selection.dataset import NUM_TOPOLOGIES, GraspTable
-from maniskill_taskgrasp.selection.features import FeatureEncoder
+from maniskill_taskgrasp.selection.features import Describer, Pair
+from maniskill_taskgrasp.selection.names import name_vectors
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Distinct inputs of a table with their topology counts."""
+    """Distinct pairs of a table, in order of first appearance."""
 
-    features: np.ndarray
-    """(groups, width) raw features."""
+    pairs: list[Pair]
     counts: np.ndarray
-    """(groups, 15) rows of each topology."""
-    group_of_row: np.ndarray
-    """(rows,) int: which input each row of the table has."""
+    """(pairs, 15) rows of each topology."""
+    pair_of_row: np.ndarray
+    """(rows,) int into `pairs`."""
+
+    @property
+    def keys(self) -> list[tuple[str, str]]:
+        """(object name, action) of each pair."""
+        return [(affordance.name, action) for affordance, action in self.pairs]
 
 
-def condense(table: GraspTable, encoder: FeatureEncoder) -> Evidence:
-    """Group rows by (object, action, force, constraint, class), in order of first appearance."""
-    columns = (table.objects, table.actions, table.forces, table.constraints, table.classes)
-    keys = list(zip(*(column.tolist() for column in columns), strict=True))
+def condense(table: GraspTable) -> Evidence:
+    """Count the topologies of each pair; the table must be without platform."""
+    keys = list(zip(table.objects.tolist(), table.actions.tolist(), strict=True))
     number = {key: i for i, key in enumerate(dict.fromkeys(keys))}
-    group_of_row = np.array([number[key] for key in keys])
+    pair_of_row = np.array([number[key] for key in keys])
     counts = np.zeros((len(number), NUM_TOPOLOGIES))
-    np.add.at(counts, (group_of_row, table.topology), 1)
-    features = [
-        encoder(
-            table.affordances[obj],
-            action,
-            {"force": force, "constraint": constraint, "task_class": task_class},
-        )
-        for obj, action, force, constraint, task_class in number
-    ]
-    return Evidence(np.stack(features), counts, group_of_row)
+    np.add.at(counts, (pair_of_row, table.topology), 1)
+    pairs = [(table.affordances[obj], action) for obj, action in number]
+    return Evidence(pairs, counts, pair_of_row)
 
 
-def count_pairs(table: GraspTable) -> dict[tuple[str, str], np.ndarray]:
-    """(object, action) -> rows of each topology (15,)."""
-    counts: dict[tuple[str, str], np.ndarray] = {}
-    rows = zip(table.objects.tolist(), table.actions.tolist(), table.topology, strict=True)
-    for obj, action, topology in rows:
-        counts.setdefault((obj, action), np.zeros(NUM_TOPOLOGIES))[topology] += 1
-    return counts
+def fit_describer(table: GraspTable) -> Describer:
+    """Scales from the table's own objects, name vectors from the shipped file."""
+    names = dict.fromkeys(table.objects.tolist())
+    return Describer.fit([table.affordances[name] for name in names], *name_vectors())

@@ -1,13 +1,12 @@
-"""What the network sees of an object and an action: measurements, classes and name vectors."""
+"""What the networks see of an object and an action: measurements, classes and name vectors."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from maniskill_taskgrasp.errors import unknown_name
 from maniskill_taskgrasp.knowledge import Affordance
 
 CATEGORIES: dict[str, tuple[str, ...]] = {
@@ -22,18 +21,16 @@ CATEGORIES: dict[str, tuple[str, ...]] = {
 }
 """Object attribute -> the data set's values; 32 indicators. An unknown value sets none."""
 
-PARAMETER_VALUES: dict[str, tuple[str, ...]] = {
-    "force": ("weight", "interaction"),
-    "constraint": (*("uuu", "ttr", "rxx", "uur", "utt", "txx", "uxx", "trx", "xxx", "urx", "ttx"),),
-    "task_class": ("use", "hold", "feel"),
-}
-"""Task parameter (`knowledge.PARAMETERS`) -> the data set's values; 16 indicators."""
-
 NAME_WIDTH = 384
 """Length of a sentence vector (all-MiniLM-L6-v2)."""
+OBJECT_DIRECTIONS = 48
+ACTION_DIRECTIONS = 32
+"""Main directions kept of the name vectors for the perceptrons; the kernel uses all of them."""
 
 EncodeName = Callable[[str], np.ndarray]
-"""A name -> its sentence vector (384,), of length 1."""
+"""A name -> its sentence vector (384,)."""
+Pair = tuple[Affordance, str]
+"""An object and the name of an action."""
 
 
 def measurements(affordance: Affordance) -> np.ndarray:
@@ -53,103 +50,104 @@ def indicators(affordance: Affordance) -> np.ndarray:
     )
 
 
-def parameter_indicators(parameters: Mapping[str, str] | None) -> np.ndarray:
-    """(16,) 0/1; all zeros where the parameters are not known.
+@dataclass(frozen=True, eq=False)
+class NameVectors:
+    """Unit sentence vectors of the known names."""
 
-    Raises:
-        InputError: a parameter or a value that the data set does not have.
-    """
-    parameters = parameters or {}
-    for name, value in parameters.items():
-        if name not in PARAMETER_VALUES:
-            raise unknown_name("task parameter", name, PARAMETER_VALUES, "force, constraint, class")
-        if value not in PARAMETER_VALUES[name]:
-            known = PARAMETER_VALUES[name]
-            raise unknown_name(f"value of {name}", value, known, ", ".join(known))
-    return np.array(
-        [
-            float(parameters.get(name) == value)
-            for name, values in PARAMETER_VALUES.items()
-            for value in values
-        ]
-    )
+    known: Mapping[str, np.ndarray]
+    """Name -> (384,)."""
+
+    def __call__(self, names: Sequence[str], encode: EncodeName | None = None) -> np.ndarray:
+        """(n, 384); a name that is neither known nor encoded is a zero, akin to no other."""
+        return np.stack([self._one(name, encode) for name in names])
+
+    def _one(self, name: str, encode: EncodeName | None) -> np.ndarray:
+        if name not in self.known and encode is None:
+            return np.zeros(NAME_WIDTH)
+        vector = self.known[name] if name in self.known else encode(name)  # type: ignore[misc]
+        vector = np.asarray(vector, float)
+        return vector / max(float(np.linalg.norm(vector)), 1e-9)
 
 
 @dataclass(frozen=True, eq=False)
-class NameProjection:
-    """Sentence vectors reduced to their main directions over the names known in training."""
+class Directions:
+    """Name vectors reduced to the main directions among the training names."""
 
     mean: np.ndarray
     """(384,)"""
     basis: np.ndarray
-    """(384, k), columns of principal directions, scaled to unit variance of the first."""
-    known: dict[str, np.ndarray]
-    """Name -> its projected vector (k,)."""
+    """(384, k)"""
 
     @classmethod
-    def fit(cls, vectors: Mapping[str, np.ndarray], width: int) -> NameProjection:
-        """Principal components of all vectors; no label enters, so no split is broken."""
-        stacked = np.stack(list(vectors.values())).astype(float)
-        mean = stacked.mean(0)
-        _, singular, directions = np.linalg.svd(stacked - mean, full_matrices=False)
-        scale = np.sqrt(len(stacked)) / singular[0]
-        basis = directions[:width].T * scale
-        known = {name: (vector - mean) @ basis for name, vector in vectors.items()}
-        return cls(mean, basis, known)
+    def fit(cls, vectors: np.ndarray, width: int) -> Directions:
+        """Principal components of (n, 384) vectors; fewer than `width` where n is small."""
+        mean = vectors.mean(0)
+        directions = np.linalg.svd(vectors - mean, full_matrices=False)[2]
+        return cls(mean, directions[:width].T)
 
-    def __call__(self, name: str, encode: EncodeName | None = None) -> np.ndarray:
-        """(k,) the name's vector; zeros (the average name) where it is unknown and not encoded."""
-        if name in self.known:
-            return self.known[name]
-        if encode is None:
-            return np.zeros(self.basis.shape[1])
-        return (np.asarray(encode(name), float) - self.mean) @ self.basis
+    def __call__(self, vectors: np.ndarray) -> np.ndarray:
+        """(n, 384) -> (n, k); an unknown name's zero vector is placed at the average name."""
+        known = vectors.any(1, keepdims=True)
+        return ((vectors - self.mean) @ self.basis) * known
 
 
 @dataclass(frozen=True, eq=False)
-class FeatureEncoder:
-    """(object, action) -> the network's input vector."""
+class Described:
+    """n pairs as the networks see them."""
 
-    objects: NameProjection
-    actions: NameProjection
+    sizes: np.ndarray
+    """(n, 4) standardised log sizes and mass; zero extents of floppy objects at the mean."""
+    classes: np.ndarray
+    """(n, 32) indicators."""
+    object_vectors: np.ndarray
+    """(n, 384)"""
+    action_vectors: np.ndarray
+    """(n, 384)"""
+    objects: np.ndarray
+    """(n,) str"""
+    actions: np.ndarray
+    """(n,) str"""
 
-    @property
-    def blocks(self) -> dict[str, slice]:
-        """Where each part of the vector lies; a part that is unknown is all zeros."""
-        widths = {
-            "measurements": 4,
-            "indicators": sum(len(values) for values in CATEGORIES.values()),
-            "object_name": self.objects.basis.shape[1],
-            "action_name": self.actions.basis.shape[1],
-            "parameters": sum(len(values) for values in PARAMETER_VALUES.values()),
-        }
-        ends = np.cumsum(list(widths.values())).tolist()
-        return {
-            name: slice(end - width, end)
-            for (name, width), end in zip(widths.items(), ends, strict=True)
-        }
 
-    def __call__(
-        self,
-        affordance: Affordance,
-        action: str,
-        parameters: Mapping[str, str] | None = None,
-        encode: EncodeName | None = None,
-    ) -> np.ndarray:
-        """(width,) float64, not standardised, laid out as `blocks` says.
+@dataclass(frozen=True, eq=False)
+class Describer:
+    """Pairs -> what the networks see; its scales come from the training pairs."""
 
-        Args:
-            affordance: the object.
-            action: one of the 74 names, or any phrase when `encode` is given.
-            parameters: task parameters; missing ones are left blank.
-            encode: sentence vectors of names that were not in training.
-        """
-        return np.concatenate(
-            [
-                measurements(affordance),
-                indicators(affordance),
-                self.objects(affordance.name, encode),
-                self.actions(action, encode),
-                parameter_indicators(parameters),
-            ]
+    object_names: NameVectors
+    action_names: NameVectors
+    size_mean: np.ndarray
+    """(4,) of the training objects that have a shape."""
+    size_scale: np.ndarray
+    """(4,)"""
+
+    @classmethod
+    def fit(
+        cls,
+        affordances: Iterable[Affordance],
+        object_vectors: Mapping[str, np.ndarray],
+        action_vectors: Mapping[str, np.ndarray],
+    ) -> Describer:
+        """Scales from the training objects, each counted once; vectors of all known names."""
+        sizes = np.stack([measurements(a) for a in affordances if not a.is_floppy])
+        return cls(
+            object_names=NameVectors(object_vectors),
+            action_names=NameVectors(action_vectors),
+            size_mean=sizes.mean(0),
+            size_scale=sizes.std(0),
+        )
+
+    def __call__(self, pairs: Sequence[Pair], encode: EncodeName | None = None) -> Described:
+        affordances = [affordance for affordance, _ in pairs]
+        objects = [affordance.name for affordance in affordances]
+        actions = [action for _, action in pairs]
+        sizes = np.stack([measurements(a) for a in affordances])
+        floppy = np.array([a.is_floppy for a in affordances])
+        sizes[floppy, :3] = self.size_mean[:3]
+        return Described(
+            sizes=(sizes - self.size_mean) / self.size_scale,
+            classes=np.stack([indicators(a) for a in affordances]),
+            object_vectors=self.object_names(objects, encode),
+            action_vectors=self.action_names(actions, encode),
+            objects=np.array(objects),
+            actions=np.array(actions),
         )

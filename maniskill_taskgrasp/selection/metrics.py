@@ -10,6 +10,8 @@ OPPOSITION_OF = np.array([OPPOSITIONS.index(t.opposition) for t in TOPOLOGIES])
 PIP_OF = np.array([PIPS.index(t.pip) for t in TOPOLOGIES])
 ECE_BINS = 10
 SMALLEST_PROBABILITY = 1e-9
+THRESHOLDS = tuple(round(0.05 * step, 2) for step in range(1, 20))
+"""Score from which a topology counts as predicted (the paper's Fig. 7)."""
 PER_ROW = ("hit@1", "match@3", "any@3", "P@3", "own@1", "own@3", "o", "p", "NLL")
 
 
@@ -82,3 +84,19 @@ def micro_scores(predicted: np.ndarray, label_sets: np.ndarray) -> tuple[float, 
     recall = true_positive / max(int(label_sets.sum()), 1)
     f1 = 2 * precision * recall / max(precision + recall, SMALLEST_PROBABILITY)
     return precision, recall, f1
+
+
+def threshold_curve(scores: np.ndarray, labels: np.ndarray) -> list[dict[str, float]]:
+    """Micro precision, recall and F1 of the label sets at each threshold."""
+    points = []
+    for threshold in THRESHOLDS:
+        precision, recall, f1 = micro_scores(scores >= threshold, labels)
+        points.append({"threshold": threshold, "precision": precision, "recall": recall, "f1": f1})
+    return points
+
+
+def confusion(predicted: np.ndarray, observed: np.ndarray, classes: int) -> list[list[int]]:
+    """Counts, observed class by row, predicted class by column."""
+    counts = np.zeros((classes, classes), int)
+    np.add.at(counts, (observed, predicted), 1)
+    return counts.tolist()

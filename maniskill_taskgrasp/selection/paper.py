@@ -15,12 +15,22 @@ from torch import Tensor, nn
 
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.selection.dataset import NUM_TOPOLOGIES, GraspTable
-from maniskill_taskgrasp.selection.features import CATEGORIES, PARAMETER_VALUES, indicators
+from maniskill_taskgrasp.selection.features import CATEGORIES, indicators
 from maniskill_taskgrasp.selection.metrics import OPPOSITION_OF, PIP_OF
 from maniskill_taskgrasp.topology import OPPOSITIONS, PIPS
 
+BATCH = 64
+LEARNING_RATE = 1e-3
 AUGMENTED_ROWS = 136_627
 """Rows after the paper's augmentation."""
+PARAMETER_VALUES: dict[str, tuple[str, ...]] = {
+    "forces": ("weight", "interaction"),
+    "constraints": (
+        *("uuu", "ttr", "rxx", "uur", "utt", "txx", "uxx", "trx", "xxx", "urx", "ttx"),
+    ),
+    "classes": ("use", "hold", "feel"),
+}
+"""Column of `GraspTable` -> the data set's values; 16 indicators."""
 CONTINUOUS = ("A", "B", "C", "Mass", "Duration")
 """First columns of `paper_features`: those that augmentation perturbs."""
 
@@ -56,9 +66,8 @@ def paper_features(table: GraspTable, duration: bool = True) -> np.ndarray:
     if duration:
         parts.append(table.durations[:, None])
     parts.append(np.array([indicators(a) for a in affordances]))
-    columns = (table.forces, table.constraints, table.classes)
-    for column, values in zip(columns, PARAMETER_VALUES.values(), strict=True):
-        parts.append(column[:, None] == np.array(values))
+    for column, values in PARAMETER_VALUES.items():
+        parts.append(getattr(table, column)[:, None] == np.array(values))
     parts.append(table.actions[:, None] == np.array(list(load_knowledge().actions)))
     return np.hstack(parts).astype(np.float32)
 
@@ -130,7 +139,7 @@ class PaperTrainer:
         self._batch = batch
         self._generator = torch.Generator().manual_seed(seed)
         self.network = PaperNetwork(inputs.shape[1])
-        self._optimiser = torch.optim.Adam(self.network.parameters(), lr=1e-3)
+        self._optimiser = torch.optim.Adam(self.network.parameters(), lr=LEARNING_RATE)
         self.epochs = 0
 
     def epoch(self) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 import torch
 
 from maniskill_taskgrasp.selection.dataset import GraspTable
-from maniskill_taskgrasp.selection.metrics import micro_scores, per_row
+from maniskill_taskgrasp.selection.metrics import confusion, per_row, threshold_curve
 from maniskill_taskgrasp.selection.paper import (
     AUGMENTED_ROWS,
     CONTINUOUS,
@@ -23,8 +23,6 @@ from maniskill_taskgrasp.selection.paper import (
     predict,
 )
 
-THRESHOLDS = tuple(round(0.05 * step, 2) for step in range(1, 20))
-"""Sigmoid thresholds of the sweep (their Fig. 7)."""
 SCORED_ROWS = 6_500
 """Rows of the test, and as many of the training, that are scored after every epoch."""
 
@@ -45,17 +43,6 @@ class PaperConfig:
     """Noise in standard deviations; the paper does not give it. At 0.1 it blurs Duration (median
     3 s, deviation 18 s) so much that the rows cannot be told apart and memorised."""
     seed: int = 0
-
-
-def head_scores(
-    scores: tuple[np.ndarray, ...], targets: Targets, observed: np.ndarray
-) -> dict[str, np.ndarray]:
-    """`metrics.per_row`, but with o and p from the network's own heads."""
-    topology, opposition, pip = scores
-    values = per_row(topology, observed, targets.labels)
-    values["o"] = (opposition.argmax(1) == targets.opposition).astype(float)
-    values["p"] = (pip.argmax(1) == targets.pip).astype(float)
-    return values
 
 
 def train_leaking(
@@ -118,21 +105,10 @@ def _score(
     observed: np.ndarray,
     rows: np.ndarray,
 ) -> dict[str, float]:
-    values = head_scores(predict(network, inputs[rows]), targets.take(rows), observed[rows])
-    return {name: float(values[name].mean()) for name in ("hit@1", "match@3", "own@1", "o", "p")}
-
-
-def threshold_curve(scores: np.ndarray, labels: np.ndarray) -> list[dict[str, float]]:
-    """Micro precision, recall and F1 of the label sets at each threshold."""
-    points = []
-    for threshold in THRESHOLDS:
-        precision, recall, f1 = micro_scores(scores >= threshold, labels)
-        points.append({"threshold": threshold, "precision": precision, "recall": recall, "f1": f1})
-    return points
-
-
-def confusion(predicted: np.ndarray, observed: np.ndarray, classes: int) -> list[list[int]]:
-    """Counts, observed class by row, predicted class by column."""
-    counts = np.zeros((classes, classes), int)
-    np.add.at(counts, (observed, predicted), 1)
-    return counts.tolist()
+    scores, opposition, pip = predict(network, inputs[rows])
+    values = per_row(scores, observed[rows], targets.labels[rows])
+    return {
+        **{name: float(values[name].mean()) for name in ("hit@1", "match@3", "own@1")},
+        "o": float((opposition.argmax(1) == targets.opposition[rows]).mean()),
+        "p": float((pip.argmax(1) == targets.pip[rows]).mean()),
+    }

@@ -2,37 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 
 from maniskill_taskgrasp.errors import InputError, echo, unknown_name
-from maniskill_taskgrasp.knowledge import Affordance, load_knowledge
-from maniskill_taskgrasp.selection.checkpoint import (
-    load_checkpoint,
-    unpack_encoder,
-    unpack_ensemble,
+from maniskill_taskgrasp.knowledge import (
+    PARAMETERS,
+    ActionFacts,
+    Affordance,
+    load_knowledge,
 )
+from maniskill_taskgrasp.selection.checkpoint import load_checkpoint, pack, save_checkpoint, unpack
 from maniskill_taskgrasp.selection.dataset import NUM_TOPOLOGIES
-from maniskill_taskgrasp.selection.ensemble import Ensemble
-from maniskill_taskgrasp.selection.features import EncodeName, FeatureEncoder
+from maniskill_taskgrasp.selection.features import Describer, EncodeName, Pair
+from maniskill_taskgrasp.selection.mixture import Mixture, shrunk
 from maniskill_taskgrasp.selection.strategy import GraspStrategy
 
 PairCounts = Mapping[tuple[str, str], np.ndarray]
 """(object, action) -> rows of each topology (15,)."""
-
-
-def shrunk(counts: np.ndarray, model: np.ndarray, strength: float) -> np.ndarray:
-    """What people did, shrunk towards what the network expects: (n_k + a P_k) / (n + a).
-
-    Args:
-        counts: (15,) rows of each topology for this pair; zeros where it was never seen.
-        model: (15,) the network's distribution.
-        strength: a, the number of rows that the network's opinion is worth.
-    """
-    return (counts + strength * model) / (counts.sum() + strength)
+SHIPPED = "checkpoints/selector.pt"
 
 
 class Selector:
@@ -40,8 +31,8 @@ class Selector:
 
     def __init__(
         self,
-        encoder: FeatureEncoder,
-        ensemble: Ensemble,
+        describer: Describer,
+        mixture: Mixture,
         pair_counts: PairCounts,
         shrink: float,
         encode: EncodeName | None = None,
@@ -49,14 +40,14 @@ class Selector:
         """From its parts; `Selector.load` is what most callers want.
 
         Args:
-            encoder: features of an object and an action.
-            ensemble: the network.
+            describer: what the networks see of a pair.
+            mixture: the networks.
             pair_counts: the training rows, counted.
-            shrink: strength a of `shrunk`.
+            shrink: strength a of `mixture.shrunk`.
             encode: sentence vectors for names that training did not know; None blanks them.
         """
-        self._encoder = encoder
-        self._ensemble = ensemble
+        self._describer = describer
+        self._mixture = mixture
         self._pair_counts = pair_counts
         self._shrink = shrink
         self._encode = encode
@@ -69,18 +60,29 @@ class Selector:
             InputError: the file is missing, damaged or of another kind.
         """
         if path is None:
-            shipped = files("maniskill_taskgrasp.assets").joinpath("checkpoints/selector.pt")
-            path = Path(str(shipped))
-        content = load_checkpoint(Path(path))
-        counts = content["counts"].numpy().astype(float)
-        pairs = {tuple(pair): row for pair, row in zip(content["pairs"], counts, strict=True)}
-        return cls(
-            encoder=unpack_encoder(content),
-            ensemble=unpack_ensemble(content["ensemble"]),
-            pair_counts=pairs,
-            shrink=float(content["shrink"]),
-            encode=encode,
+            path = str(files("maniskill_taskgrasp.assets").joinpath(SHIPPED))
+        return cls(*unpack(load_checkpoint(Path(path))), encode)
+
+    def save(self, path: Path, card: Mapping[str, object]) -> None:
+        """Write a checkpoint that `load` reads; `card` says how it was made."""
+        save_checkpoint(
+            path, pack(self._describer, self._mixture, self._pair_counts, self._shrink, card)
         )
+
+    def parts(self, pairs: Sequence[Pair]) -> tuple[np.ndarray, np.ndarray]:
+        """Distributions (n, 15) of the kernel networks and of the perceptrons, evidence unused."""
+        return self._mixture.parts(self._describer(pairs, self._encode))
+
+    def counts(self, keys: Sequence[tuple[str, str]]) -> np.ndarray:
+        """(n, 15) rows of human data on each (object name, action)."""
+        nothing = np.zeros(NUM_TOPOLOGIES)
+        return np.array([self._pair_counts.get(key, nothing) for key in keys])
+
+    def predict(self, pairs: Sequence[Pair]) -> np.ndarray:
+        """(n, 15) probabilities: evidence where there is some, the networks where there is none."""
+        model = self._mixture.predict(self._describer(pairs, self._encode))
+        keys = [(affordance.name, action) for affordance, action in pairs]
+        return shrunk(self.counts(keys), model, self._shrink)
 
     def rank(
         self,
@@ -94,40 +96,60 @@ class Selector:
             obj: a name of the data set, or the measurements of any object.
             action: one of the 74 names; or weights of several; or None for a transfer request
                 ("hand me ..."), which weighs the actions as people did them with this object.
-            parameters: task parameters (`knowledge.PARAMETERS`) as far as they are known.
+            parameters: task parameters (`knowledge.PARAMETERS`) as far as they are known; they
+                weigh the actions against each other where more than one is possible.
 
         Raises:
             InputError: an unknown object, action or parameter, or weights that are no
                 distribution.
         """
         affordance = load_knowledge().affordance(obj) if isinstance(obj, str) else obj
-        weights = self._action_weights(affordance.name, action)
-        names = list(weights)
-        share = np.array([weights[name] for name in names])
-        counts = np.array([self._counts(affordance.name, name) for name in names])
-        features = [self._encoder(affordance, name, parameters, self._encode) for name in names]
-        model = self._ensemble.predict(np.stack(features))
-        each = [shrunk(c, p, self._shrink) for c, p in zip(counts, model, strict=True)]
-        return GraspStrategy.of(share @ np.array(each) / share.sum(), int(counts.sum()))
-
-    def _counts(self, obj: str, action: str) -> np.ndarray:
-        return self._pair_counts.get((obj, action), np.zeros(NUM_TOPOLOGIES))
+        weights = self._action_weights(affordance.name, action, parameters or {})
+        share = np.array(list(weights.values()))
+        probabilities = self.predict([(affordance, name) for name in weights])
+        rows = self.counts([(affordance.name, name) for name in weights]).sum()
+        return GraspStrategy.of(share @ probabilities / share.sum(), int(rows))
 
     def _action_weights(
-        self, obj: str, action: str | Mapping[str, float] | None
-    ) -> Mapping[str, float]:
-        known = load_knowledge()
+        self,
+        obj: str,
+        action: str | Mapping[str, float] | None,
+        parameters: Mapping[str, str],
+    ) -> dict[str, float]:
+        """Weights of the actions that remain possible; not normalised."""
+        actions = load_knowledge().actions
         if action is None:
-            return known.actions_of(obj) or _rows_of_actions()
-        weights = {action: 1.0} if isinstance(action, str) else dict(action)
+            weights = {a: float(n) for a, n in load_knowledge().actions_of(obj).items()}
+            weights = weights or _rows_of_actions()
+        else:
+            weights = {action: 1.0} if isinstance(action, str) else dict(action)
         for name in weights:
-            if name not in known.actions:
-                raise unknown_name("action", name, known.actions, "the 74 actions of the data set")
-        if not weights or not all(np.isfinite(w) and w >= 0 for w in weights.values()):
-            raise InputError(f"action weights must be numbers from 0 up, got {echo(weights)}")
-        if sum(weights.values()) <= 0:
-            raise InputError(f"action weights must not all be 0, got {echo(weights)}")
-        return {name: weight for name, weight in weights.items() if weight > 0}
+            if name not in actions:
+                raise unknown_name("action", name, actions, "the 74 actions of the data set")
+        if not all(np.isfinite(w) and w >= 0 for w in weights.values()) or not any(
+            weights.values()
+        ):
+            raise InputError(f"action weights must be from 0 up and not all 0, got {echo(weights)}")
+        likelihood = {name: _likelihood(actions[name], parameters) for name in weights}
+        return {name: w * likelihood[name] for name, w in weights.items() if w > 0}
+
+
+def _likelihood(action: ActionFacts, parameters: Mapping[str, str]) -> float:
+    """How well task parameters fit an action: the product of their smoothed shares of its rows.
+
+    Parameters only tell actions apart: once the action is known they say nothing more about the
+    grasp (docs/selection.md), so they never enter the networks.
+    """
+    product = 1.0
+    for name, value in parameters.items():
+        if name not in PARAMETERS:
+            raise unknown_name("task parameter", name, PARAMETERS, ", ".join(PARAMETERS))
+        known = sorted({v for a in load_knowledge().actions.values() for v in a.parameters[name]})
+        if value not in known:
+            raise unknown_name(f"value of {name}", value, known, ", ".join(known))
+        rows = action.parameters[name]
+        product *= (rows.get(value, 0) + 1) / (sum(rows.values()) + len(known))
+    return product
 
 
 def _rows_of_actions() -> dict[str, float]:
@@ -135,4 +157,4 @@ def _rows_of_actions() -> dict[str, float]:
     totals: dict[str, float] = {}
     for (_, action), counts in load_knowledge().pair_counts.items():
         totals[action] = totals.get(action, 0.0) + sum(counts)
-    return {action: total for action, total in totals.items() if total > 0}
+    return totals

@@ -1,0 +1,119 @@
+"""Runs a model over the folds of a split, keeps its predictions, and condenses them to figures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from maniskill_taskgrasp.selection import metrics
+from maniskill_taskgrasp.selection.dataset import GraspTable
+from maniskill_taskgrasp.selection.splits import folds_of
+
+TRUSTED_ROWS = 10
+"""Pairs with at least this many rows have label sets that can be trusted (83 % of the rows)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """What a model says of n test rows."""
+
+    scores: np.ndarray
+    """(n, 15), a distribution or sigmoid scores."""
+    opposition: np.ndarray | None = None
+    """(n, 3) where the model has an own head for it; else the sums of `scores` count."""
+    pip: np.ndarray | None = None
+
+
+Model = Callable[[GraspTable, GraspTable, str], Prediction]
+"""(training rows, test rows, split) -> prediction; must not read the test rows' topology."""
+
+
+def predictions(
+    name: str, model: Model, table: GraspTable, split: str, folder: Path
+) -> Iterator[Prediction]:
+    """The model's prediction for each fold, computed once and kept in `folder`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for number, (train, test) in enumerate(folds_of(table, split)):
+        path = folder / f"{name}_{split}_{number}.npz"
+        if not path.exists():
+            found = model(table.take(train), table.take(test), split)
+            arrays = {k: v.astype(np.float32) for k, v in vars(found).items() if v is not None}
+            partial = path.with_suffix(".partial.npz")
+            np.savez_compressed(partial, **arrays)
+            partial.replace(path)
+        with np.load(path) as kept:
+            yield Prediction(**{key: kept[key].astype(float) for key in kept.files})
+
+
+def evaluate(
+    name: str, model: Model, table: GraspTable, split: str, folder: Path
+) -> dict[str, object]:
+    """Figures of a model on a split, all in fractions except NLL [nats].
+
+    Returns:
+        {"row" | "pair" | "trusted": {metric: [mean, std]}, "folds": {metric: [row-weighted per
+        fold]}, "pair_folds": likewise, "ECE": {"row", "pair"} pooled over all test rows,
+        "thresholds": [...], "confusion": {...}}; "trusted" is row-weighted over pairs with ten rows
+        or more.
+    """
+    weights = metrics.pair_weights(table.pairs)
+    often = weights <= 1 / TRUSTED_ROWS
+    folds: list[dict[str, tuple[float, float]]] = []
+    trusted: list[dict[str, float]] = []
+    pooled: list[tuple[np.ndarray, ...]] = []
+    found = predictions(name, model, table, split, folder)
+    for (_, test), prediction in zip(folds_of(table, split), found, strict=True):
+        rows = np.flatnonzero(test)
+        values = row_values(prediction, table.take(rows))
+        folds.append(metrics.summarise(values, weights[rows]))
+        trusted.append({key: float(v[often[rows]].mean()) for key, v in values.items()})
+        heads = _heads(prediction)
+        pooled.append((prediction.scores, rows, values["own@1"], *heads))
+    scores, rows, correct, opposition, pip = (
+        np.concatenate(column) for column in zip(*pooled, strict=True)
+    )
+    confidence = scores.max(1) / scores.sum(1)
+    observed = table.topology[rows]
+    return {
+        "row": {k: _mean_std([fold[k][0] for fold in folds]) for k in metrics.PER_ROW},
+        "pair": {k: _mean_std([fold[k][1] for fold in folds]) for k in metrics.PER_ROW},
+        "trusted": {k: _mean_std([fold[k] for fold in trusted]) for k in metrics.PER_ROW},
+        "folds": {k: [fold[k][0] for fold in folds] for k in metrics.PER_ROW},
+        "pair_folds": {k: [fold[k][1] for fold in folds] for k in metrics.PER_ROW},
+        "ECE": {
+            "row": metrics.calibration_error(confidence, correct),
+            "pair": metrics.calibration_error(confidence, correct, weights[rows]),
+        },
+        "thresholds": metrics.threshold_curve(scores, table.label_sets[rows]),
+        "confusion": {
+            "opposition": metrics.confusion(opposition, metrics.OPPOSITION_OF[observed], 3),
+            "pip": metrics.confusion(pip, metrics.PIP_OF[observed], 3),
+        },
+    }
+
+
+def row_values(prediction: Prediction, test: GraspTable) -> dict[str, np.ndarray]:
+    """`metrics.per_row` of a prediction; o and p by the model's own heads where it has them."""
+    values = metrics.per_row(prediction.scores, test.topology, test.label_sets)
+    if prediction.opposition is not None and prediction.pip is not None:
+        opposition, pip = _heads(prediction)
+        values["o"] = (opposition == metrics.OPPOSITION_OF[test.topology]).astype(float)
+        values["p"] = (pip == metrics.PIP_OF[test.topology]).astype(float)
+    return values
+
+
+def _heads(prediction: Prediction) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) most probable opposition and PIP class of each row."""
+    opposition, pip = prediction.opposition, prediction.pip
+    if opposition is None:
+        opposition = metrics.marginal(prediction.scores, metrics.OPPOSITION_OF)
+    if pip is None:
+        pip = metrics.marginal(prediction.scores, metrics.PIP_OF)
+    return opposition.argmax(1), pip.argmax(1)
+
+
+def _mean_std(values: list[float]) -> list[float]:
+    return [float(np.mean(values)), float(np.std(values))]
