@@ -69,37 +69,41 @@ class ContactTable:
         return self._table
 
     def _read(self) -> np.ndarray:
-        impulses: list[np.ndarray] = []
-        starts: list[int] = []  # First point of each contact that matters.
-        slots: list[int] = []
-        contact_of_slot: list[int] = []
-        for env in np.nonzero(self._watched & ~self._void)[0].tolist():
-            for contact in self._systems[env].get_contacts():
-                hit = self._slots_hit(*contact.bodies)
-                points = contact.points if hit else None
-                if not points:
-                    continue
-                slots += hit
-                contact_of_slot += [len(starts)] * len(hit)
-                starts.append(len(impulses))
-                impulses += [point.impulse for point in points]
+        found = self._find()
         table = np.zeros((self._num_rows, 3), dtype=np.float32)
-        if impulses:
-            sums = np.add.reduceat(np.concatenate(impulses).reshape(-1, 3), starts, axis=0)
-            weights = sums[contact_of_slot]
-            for axis in range(3):
-                signed = np.bincount(slots, weights[:, axis], minlength=2 * self._num_rows)
-                table[:, axis] = signed[0::2] - signed[1::2]
+        if not found:
+            return table
+        impulses: list[np.ndarray] = []
+        starts: list[int] = []  # First point of each contact.
+        for _, points in found:
+            starts.append(len(impulses))
+            impulses += [point.impulse for point in points]
+        sums = np.add.reduceat(np.concatenate(impulses).reshape(-1, 3), starts, axis=0)
+        slots = [slot for hit, _ in found for slot in hit]
+        weights = np.repeat(sums, [len(hit) for hit, _ in found], axis=0)
+        for axis in range(3):
+            signed = np.bincount(slots, weights[:, axis], minlength=2 * self._num_rows)
+            table[:, axis] = signed[0::2] - signed[1::2]
         return table
 
-    def _slots_hit(self, first: Any, second: Any) -> list[int]:
-        hit = []
-        partners = self._pair_slots.get(first)
-        if partners is not None and (slot := partners.get(second)) is not None:
-            hit.append(slot)
-        if self._body_slots:
-            if (slot := self._body_slots.get(first)) is not None:
-                hit.append(slot)
-            if (slot := self._body_slots.get(second)) is not None:
-                hit.append(slot + 1)
-        return hit
+    def _find(self) -> list[tuple[tuple[int, ...], list[Any]]]:
+        """Slots and points of every contact that somebody asked about.
+
+        Runs over all contacts every step, most of which nobody asked about: reject those fast.
+        """
+        found = []
+        pair_slots, body_slots = self._pair_slots, self._body_slots
+        for env in np.nonzero(self._watched & ~self._void)[0].tolist():
+            for contact in self._systems[env].get_contacts():
+                first, second = contact.bodies
+                partners = pair_slots.get(first)
+                slot = partners.get(second) if partners else None
+                hit: tuple[int, ...] = () if slot is None else (slot,)
+                if body_slots:
+                    if (own := body_slots.get(first)) is not None:
+                        hit = (*hit, own)
+                    if (own := body_slots.get(second)) is not None:
+                        hit = (*hit, own + 1)
+                if hit and (points := contact.points):
+                    found.append((hit, points))
+        return found

@@ -166,17 +166,13 @@ class EnvGroup:
 
     def read(self) -> None:
         """Bring `sim_body` (except the velocities of moving links), `sim_qpos`, `sim_qvel` up."""
-        stale = np.nonzero(self._stale)[0].tolist()
-        if not stale:
+        if not self._stale.any():
             return
-        for env in stale:
-            state = np.frombuffer(self.systems[env].pack(), dtype=np.float32)
-            poses = np.frombuffer(self.scenes[env].pack_poses(), dtype=np.float32)
-            here, there = self._state_slices[env], self._entity_slices[env]
-            if len(state) != here.stop - here.start or len(poses) != 7 * (there.stop - there.start):
-                raise RuntimeError("bodies were added or removed after the scene was set up")
-            self._state[here] = state
-            self._poses[there] = poses.reshape(-1, 7)
+        if self._stale.all():
+            self._take(range(len(self.scenes)), slice(0, -1), slice(None))
+        else:
+            for env in np.nonzero(self._stale)[0].tolist():
+                self._take([env], self._state_slices[env], self._entity_slices[env])
         self._stale[:] = False
         self._moving_stale = True
         sim = self.arrays
@@ -185,6 +181,16 @@ class EnvGroup:
         sim.sim_body[self.root_row, 7:] = self._state[self._root_source[:, 7:]]
         sim.sim_qpos[:] = self._state[self._qpos_source]
         sim.sim_qvel[:] = self._state[self._qvel_source]
+
+    def _take(self, envs: Sequence[int], state: slice, entities: slice) -> None:
+        """Read the packed state of consecutive environments into these places."""
+        packed = b"".join([self.systems[env].pack() for env in envs])
+        poses = b"".join([self.scenes[env].pack_poses() for env in envs])
+        try:
+            self._state[state] = np.frombuffer(packed, dtype=np.float32)
+            self._poses[entities] = np.frombuffer(poses, dtype=np.float32).reshape(-1, 7)
+        except ValueError:
+            raise RuntimeError("bodies were added or removed after the scene was set up") from None
 
     def read_moving(self) -> None:
         """Bring the velocities of moving links and the joint accelerations up, one by one."""
@@ -358,6 +364,7 @@ def _tell(wanted: np.ndarray, told: np.ndarray, setters: list) -> None:
     changed = wanted != told
     changed[~changed.any(axis=1), :1] = True
     which = np.flatnonzero(changed)
-    for entry, value in zip(which.tolist(), wanted.ravel()[which].tolist(), strict=True):
+    values = wanted.ravel()[which].tolist()
+    for entry, value in zip(which.tolist(), values):  # noqa: B905 (strict costs a tenth)
         setters[entry](value)
     told[:] = wanted

@@ -34,16 +34,23 @@ class ImpulseQuery:
     """Impulses that were asked for; `cuda_impulses.torch()` is (asked, 3) [Ns]."""
 
     def __init__(self, groups: np.ndarray, rows: np.ndarray, signs: np.ndarray):
-        self._groups, self._rows = groups, rows
-        self._signs = signs[:, None].astype(np.float32)
+        """
+        Args:
+            groups: (asked,) group that knows each impulse.
+            rows: (asked,) row in that group's contact table.
+            signs: (asked,) 1 or -1.
+        """
         self._impulses = np.zeros((len(rows), 3), dtype=np.float32)
         self.cuda_impulses = Buffer(self._impulses)
+        self._parts = []
+        for group in np.unique(groups).tolist():
+            mine = np.nonzero(groups == group)[0]
+            self._parts.append((group, mine, rows[mine], signs[mine, None].astype(np.float32)))
 
     def fill(self, tables: Sequence[np.ndarray]) -> None:
         """Take what this query asks for out of the groups' contact tables."""
-        for group, table in enumerate(tables):
-            mine = self._groups == group
-            self._impulses[mine] = table[self._rows[mine]] * self._signs[mine]
+        for group, mine, rows, signs in self._parts:
+            self._impulses[mine] = tables[group][rows] * signs
 
 
 @dataclass
