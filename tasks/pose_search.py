@@ -137,9 +137,10 @@ class GraspTrials:
         self._policy = ConstantClosing(self.env)
         self._named = torch.tensor([p in topology.parts for p in PARTS])
         self._precise = topology.pip == "Precision" and topology.opposition == "Pad"
-        hand = self.env.agent.hand
+        env: Any = self.env
+        hand = env.agent.hand
         links = [link for part in PARTS for link in hand.part_links[part]]
-        self._surfaces = ContactSurfaces(hand, links, self.env.device)
+        self._surfaces = ContactSurfaces(hand, links, env.device)
 
     def run(
         self, pregrasp: Array, preshape: Array, closing: Array, seed: int, *, whole: bool
