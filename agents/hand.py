@@ -6,6 +6,7 @@ Another hand is added by writing one `HandDescription`; no other code names a jo
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -61,6 +62,8 @@ class HandDescription:
     """Link whose +y is the palm normal and +z the direction of straight fingers."""
     part_links: dict[str, tuple[str, ...]]
     """Part (`PARTS`) -> links that belong to it."""
+    palm_shapes: tuple[str, ...]
+    """Collision primitives that make up the palm's grasping face; distances are taken to these."""
     tip_links: dict[str, str]
     """Finger or thumb part -> its last link, the one that carries the pad."""
     thumb_rotation: str
@@ -83,3 +86,14 @@ class HandDescription:
     """[kg m^2] reflected inertia of an actuator."""
     postures: dict[str, Posture] = field(default_factory=dict)
     """Topology slug -> posture."""
+
+    def joint_angles(self, actuators: Any) -> dict[str, Any]:
+        """Angle (...) [rad] of every joint, the coupled ones in place, by name.
+
+        Args:
+            actuators: (..., num_actuators) [rad], an array or a tensor.
+        """
+        angles = {name: actuators[..., i] for i, name in enumerate(self.actuators)}
+        for coupling in self.couplings:
+            angles[coupling.joint] = coupling.ratio * angles[coupling.source] + coupling.offset
+        return angles

@@ -7,8 +7,8 @@ from torch import Tensor
 
 from maniskill_taskgrasp.agents.controllers.palm_motion import joint_step
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
+from maniskill_taskgrasp.agents.rotations import pose_error, quat_to_matrix
 from maniskill_taskgrasp.episode import PHASE_STEPS
-from maniskill_taskgrasp.tasks.geometry import quat_to_matrix, rotation_vector
 from maniskill_taskgrasp.tasks.pregrasp import PalmPath
 
 SEED_ITERATIONS = 60
@@ -107,28 +107,22 @@ class ArmIK:
         position = (position - self._root_position) @ self._root_rotation
         rotation = self._root_rotation.T @ rotation
         for _ in range(iterations):
-            pose, jacobian = self._kinematics.pose_and_jacobian(self._full(qpos), self._palm_link)
-            step = joint_step(jacobian[:, :, self._arm], _twist(pose, position, rotation))
+            pose, jacobian = self._palm(qpos)
+            step = joint_step(jacobian, pose_error(pose, position, rotation))
             qpos = qpos + step.clamp(-MAX_STEP, MAX_STEP)
             qpos = qpos.clamp(self._qlimits[:, 0], self._qlimits[:, 1])
-        poses = self._kinematics.link_matrices(self._full(qpos))
-        pose = poses[:, self._kinematics.link_index(self._palm_link)]
-        error = _twist(pose, position, rotation)
+        error = pose_error(self._palm(qpos)[0], position, rotation)
         ok = (error[:, :3].norm(dim=1) <= POSITION_TOLERANCE) & (
             error[:, 3:].norm(dim=1) <= ROTATION_TOLERANCE
         )
         return qpos, ok
 
-    def _full(self, qpos: Tensor) -> Tensor:
+    def _palm(self, qpos: Tensor) -> tuple[Tensor, Tensor]:
+        """The palm's pose (n, 4, 4) and its Jacobian (n, 6, num_arm), base frame."""
         full = qpos.new_zeros(len(qpos), self._kinematics.dof)
         full[:, self._arm] = qpos
-        return full
-
-
-def _twist(pose: Tensor, position: Tensor, rotation: Tensor) -> Tensor:
-    """(n, 6) [m, rad] from a pose (n, 4, 4) to a position (n, 3) and rotation (n, 3, 3)."""
-    turn = rotation @ pose[:, :3, :3].transpose(1, 2)
-    return torch.cat([position - pose[:, :3, 3], rotation_vector(turn)], 1)
+        pose, jacobian = self._kinematics.pose_and_jacobian(full, self._palm_link)
+        return pose, jacobian[:, :, self._arm]
 
 
 def resample(path: Tensor, steps: int) -> Tensor:

@@ -27,19 +27,16 @@ class PregraspPlanner:
         hand: HandDescription,
         primitives: dict[str, tuple[tuple[str, Primitive], ...]],
         kinematics: ArticulationKinematics,
-        actuator_indices: Tensor,
     ) -> None:
         """
         Args:
             hand: postures and joints.
             primitives: part -> (link, collision primitive in its frame).
             kinematics: of the whole robot.
-            actuator_indices: (num_actuators,) columns of the hand's actuators in a posture.
         """
         self._hand = hand
         self._primitives = primitives
         self._kinematics = kinematics
-        self._actuators = actuator_indices
         self._sweeps: dict[str, Tensor] = {}
 
     def plan(
@@ -85,10 +82,8 @@ class PregraspPlanner:
     def _corners(self, postures: Tensor) -> Tensor:
         kin = self._kinematics
         qpos = torch.zeros(len(postures), kin.dof)
-        qpos[:, self._actuators.cpu()] = postures
-        for coupling in self._hand.couplings:
-            source = postures[:, self._hand.actuators.index(coupling.source)]
-            qpos[:, kin.column(coupling.joint)] = coupling.ratio * source + coupling.offset
+        for joint, angles in self._hand.joint_angles(postures).items():
+            qpos[:, kin.column(joint)] = angles
         poses = kin.link_matrices(qpos.to(kin.device)).cpu()
         palm = torch.linalg.inv(poses[:, kin.link_index(self._hand.palm_frame)])
         points = []

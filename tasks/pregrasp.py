@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from maniskill_taskgrasp.tasks.geometry import axis_angle_matrix
+from maniskill_taskgrasp.agents.rotations import axis_angle_matrix
 
 PREGRASP_FIELDS = ("x", "y", "z", "tilt", "roll", "yaw")
 """x, y, z [m]: the object's centre in the palm frame once the palm is in place; tilt, roll, yaw

@@ -10,8 +10,8 @@ import torch
 from torch import Tensor
 
 from maniskill_taskgrasp.agents.hand import PARTS
+from maniskill_taskgrasp.agents.rotations import quat_to_matrix
 from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, Primitive, rotation
-from maniskill_taskgrasp.tasks.geometry import quat_to_matrix
 
 
 def part_forces(link_forces: Tensor, part_of_link: Tensor, num_parts: int) -> Tensor:

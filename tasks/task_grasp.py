@@ -18,6 +18,7 @@ from maniskill_taskgrasp import ENV_ID
 from maniskill_taskgrasp.agents.fidelity import ContactSurfaces, in_topology
 from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
+from maniskill_taskgrasp.agents.rotations import quat_multiply, quat_to_matrix, yaw_quat
 from maniskill_taskgrasp.agents.sawyer_ar10.agent import SawyerAR10
 from maniskill_taskgrasp.assets.objects import library
 from maniskill_taskgrasp.episode import CONTROL_FREQ, LIFT_START, MAX_EPISODE_STEPS, PHASES
@@ -26,7 +27,6 @@ from maniskill_taskgrasp.tasks import rewards, scene
 from maniskill_taskgrasp.tasks.arm_ik import ArmIK
 from maniskill_taskgrasp.tasks.contacts import LinkContacts
 from maniskill_taskgrasp.tasks.cpu_batch import CpuBatchMixin
-from maniskill_taskgrasp.tasks.geometry import quat_multiply, quat_to_matrix, yaw_quat
 from maniskill_taskgrasp.tasks.noise import draw_friction, draw_offsets, resolve_noise
 from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
 from maniskill_taskgrasp.tasks.phases import phase_at
@@ -194,11 +194,9 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         kinematics = ArticulationKinematics.of(agent.robot)
         self._hand_links = [link for links in agent.part_links.values() for link in links]
         link_names = [link.name for link in self._hand_links]
-        self._boxes = HandBoxes.of(agent.part_primitives, link_names, device)
+        self._boxes = HandBoxes.of(agent.sensed_primitives, link_names, device)
         self._surfaces = ContactSurfaces(agent.hand, link_names, device)
-        self.planner = PregraspPlanner(
-            agent.hand, agent.part_primitives, kinematics, agent.actuator_indices
-        )
+        self.planner = PregraspPlanner(agent.hand, agent.part_primitives, kinematics)
         limits = agent.robot.get_qlimits()[0, agent.arm_indices]
         root = Pose.create(scene.ROBOT_POSE, device=device).raw_pose[0]
         ik = ArmIK(kinematics, agent.arm_indices, agent.hand.palm_frame, limits, root)

@@ -3,43 +3,42 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import torch
 from gymnasium import spaces
-from mani_skill.agents.controllers.base_controller import BaseController, ControllerConfig
 from torch import Tensor
 
+from maniskill_taskgrasp.agents.controllers.joint_pos import (
+    JointPosController,
+    JointPosControllerConfig,
+)
 
-class ArmPathController(BaseController):
+
+def held(path: Tensor, num_steps: int) -> Tensor:
+    """(n, num_steps, num_joints): a path (n, m, num_joints) that stays at its last waypoint."""
+    rest = path[:, -1:].expand(-1, max(num_steps - path.shape[1], 0), -1)
+    return torch.cat([path, rest], 1)
+
+
+class ArmPathController(JointPosController):
     """Follows (num_envs, num_steps, num_joints) waypoints, one a control step, then holds."""
 
-    config: ArmPathControllerConfig
-    sets_target_qpos = True
-    sets_target_qvel = False
+    _memory: ClassVar[tuple[str, ...]] = ("command", "path", "step")
+    _observed: ClassVar[tuple[str, ...]] = ()
 
     def _initialize_joints(self) -> None:
         super()._initialize_joints()
-        num_envs = self.scene.num_envs
-        self.path = torch.zeros(num_envs, 1, len(self.joints), device=self.device)
-        self.step = torch.zeros(num_envs, dtype=torch.long, device=self.device)
-        self._planned = torch.zeros(num_envs, dtype=torch.bool, device=self.device)
+        self.path = self.command[:, None].clone()
+        self.step = torch.zeros(self.scene.num_envs, dtype=torch.long, device=self.device)
 
     def _initialize_action_space(self) -> None:
         self.single_action_space = spaces.Box(np.empty(0), np.empty(0), dtype=np.float32)
 
-    def set_drive_property(self) -> None:
-        for joint, limit in zip(self.joints, self.config.force_limits, strict=True):
-            joint.set_drive_properties(
-                self.config.stiffness, self.config.damping, force_limit=limit
-            )
-
-    def reset(self) -> None:
-        """Environments for which no path was laid down since their last reset hold still."""
-        still = self.scene._reset_mask & ~self._planned
-        self.path[still] = self.qpos[still][:, None]
-        self.step[still] = 0
-        self._planned &= ~self.scene._reset_mask
+    def _hold_still(self, envs: Tensor) -> None:
+        self.path[envs] = self.command[envs][:, None]
+        self.step[envs] = 0
 
     def set_path(self, env_idx: Tensor, path: Tensor) -> None:
         """Lay down a new path and start at its first waypoint.
@@ -48,9 +47,9 @@ class ArmPathController(BaseController):
             env_idx: (n,) environments.
             path: (n, num_steps, num_joints) [rad] waypoints, one a control step.
         """
-        if self.path.shape[1] != path.shape[1]:
-            self.path = self.path[:, -1:].repeat(1, path.shape[1], 1)
-        self.path[env_idx] = path.to(self.path)
+        num_steps = max(self.path.shape[1], path.shape[1])
+        self.path = held(self.path, num_steps)
+        self.path[env_idx] = held(path.to(self.path), num_steps)
         self.step[env_idx] = 0
         self._planned[env_idx] = True
 
@@ -59,18 +58,23 @@ class ArmPathController(BaseController):
         now = self.step.clamp(max=self.path.shape[1] - 1)
         return self.path[torch.arange(len(now), device=self.device), now]
 
-    def set_action(self, action: Tensor) -> None:
-        self._drive(self.waypoint())
+    def wanted_qpos(self, action: Tensor) -> Tensor:
+        return self.waypoint()
 
-    def _drive(self, targets: Tensor) -> None:
-        self.articulation.set_joint_drive_targets(targets, self.joints, self.active_joint_indices)
+    def set_action(self, action: Tensor) -> None:
+        super().set_action(action)
         self.step += 1
 
+    def set_state(self, state: dict[str, Tensor] | None, env_idx: Tensor | None = None) -> None:
+        if state and "path" in state:
+            num_joints = self.path.shape[2]
+            path = state["path"].reshape(len(state["path"]), -1, num_joints)
+            num_steps = max(self.path.shape[1], path.shape[1])
+            self.path = held(self.path, num_steps)
+            state = {**state, "path": held(path, num_steps)}
+        super().set_state(state, env_idx)
 
-@dataclass
-class ArmPathControllerConfig(ControllerConfig):
-    stiffness: float
-    damping: float
-    force_limits: tuple[float, ...]
-    """[Nm] a joint."""
+
+@dataclass(kw_only=True)
+class ArmPathControllerConfig(JointPosControllerConfig):
     controller_cls = ArmPathController

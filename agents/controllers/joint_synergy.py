@@ -13,6 +13,9 @@ from maniskill_taskgrasp.agents.controllers.coupled_hand import (
     CoupledHandController,
     CoupledHandControllerConfig,
 )
+from maniskill_taskgrasp.agents.hand import Posture
+
+Spread = tuple[tuple[float, ...], ...]
 
 
 def synergy_to_qpos(activation: Tensor, preshape: Tensor, closing: Tensor) -> Tensor:
@@ -30,21 +33,29 @@ def synergy_to_qpos(activation: Tensor, preshape: Tensor, closing: Tensor) -> Te
 
 
 class JointSynergyController(CoupledHandController):
-    """Activations in [0, 1] of the posture pair that `set_postures` gave each environment."""
+    """Activations in [0, 1] of the posture pair that `set_postures` gave each environment.
+
+    An environment that was given none uses the config's posture, and without one it holds still.
+    """
 
     config: JointSynergyControllerConfig
+    _memory = ("command", "preshape", "closing")
 
     def _initialize_joints(self) -> None:
         super()._initialize_joints()
-        shape = (self.scene.num_envs, self._num_actuators)
-        self.preshape = torch.zeros(shape, device=self.device)
-        self.closing = torch.zeros(shape, device=self.device)
+        self.preshape = self.command.clone()
+        self.closing = self.command.clone()
         spread = np.asarray(self.config.spread, dtype=np.float32)
         self._spread = torch.from_numpy(spread).to(self.device)
 
     def _initialize_action_space(self) -> None:
         num_actions = len(self.config.spread)
         self.single_action_space = spaces.Box(0.0, 1.0, (num_actions,), dtype=np.float32)
+
+    def _hold_still(self, envs: Tensor) -> None:
+        own, now = self.config.posture, self.command[envs]
+        self.preshape[envs] = now if own is None else torch.tensor(own.preshape).to(now)
+        self.closing[envs] = now if own is None else torch.tensor(own.closing).to(now)
 
     def set_postures(self, env_idx: Tensor, preshape: Tensor, closing: Tensor) -> None:
         """Give environments the postures of their topology.
@@ -56,29 +67,31 @@ class JointSynergyController(CoupledHandController):
         """
         self.preshape[env_idx] = preshape.to(self.preshape)
         self.closing[env_idx] = closing.to(self.closing)
+        self._planned[env_idx] = True
 
     def wanted_qpos(self, action: Tensor) -> Tensor:
         return synergy_to_qpos(action @ self._spread, self.preshape, self.closing)
 
 
-@dataclass
+@dataclass(kw_only=True)
 class JointSynergyControllerConfig(CoupledHandControllerConfig):
-    """`spread` (num_actions, num_actuators) says which actuators each action number drives."""
-
-    spread: tuple[tuple[float, ...], ...] = ()
+    spread: Spread
+    """(num_actions, num_actuators) motors that each action number drives."""
+    posture: Posture | None = None
+    """What the hand closes along where no task says."""
     controller_cls = JointSynergyController
 
 
-def spread_all(num_actuators: int) -> tuple[tuple[float, ...], ...]:
-    """One number an actuator."""
+def spread_all(num_actuators: int) -> Spread:
+    """One number a motor."""
     return tuple(map(tuple, np.eye(num_actuators).tolist()))
 
 
-def spread_moving(moving: np.ndarray) -> tuple[tuple[float, ...], ...]:
-    """One number for each actuator that moves; the others hold their preshape."""
+def spread_moving(moving: np.ndarray) -> Spread:
+    """One number for each motor that moves; the others hold their preshape."""
     return tuple(map(tuple, np.eye(len(moving))[moving].tolist()))
 
 
-def spread_one(num_actuators: int) -> tuple[tuple[float, ...], ...]:
+def spread_one(num_actuators: int) -> Spread:
     """One number for the whole hand."""
     return ((1.0,) * num_actuators,)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -20,8 +19,13 @@ from maniskill_taskgrasp.agents.controllers.arm_path import ArmPathController
 from maniskill_taskgrasp.agents.controllers.joint_synergy import JointSynergyController
 from maniskill_taskgrasp.agents.controllers.palm_motion import PalmResidualController
 from maniskill_taskgrasp.agents.hand import HandDescription
-from maniskill_taskgrasp.agents.sawyer_ar10.control_modes import ARM_JOINTS, control_modes
-from maniskill_taskgrasp.agents.sawyer_ar10.description import PART_PRIMITIVES
+from maniskill_taskgrasp.agents.sawyer_ar10.build import default_folder
+from maniskill_taskgrasp.agents.sawyer_ar10.control_modes import control_modes
+from maniskill_taskgrasp.agents.sawyer_ar10.description import (
+    ARM_JOINT_NAMES,
+    PART_PRIMITIVES,
+    SENSED_PRIMITIVES,
+)
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.topology import TOPOLOGIES
 
@@ -38,7 +42,7 @@ if "sawyer_ar10" in REGISTERED_AGENTS:
 
 
 def _robot_file(name: str) -> str:
-    return str(files("maniskill_taskgrasp.assets").joinpath("robots", "sawyer_ar10", name))
+    return str(default_folder() / name)
 
 
 @register_agent()
@@ -48,6 +52,7 @@ class SawyerAR10(BaseAgent):
     uid = "sawyer_ar10"
     hand: HandDescription = AR10
     part_primitives = PART_PRIMITIVES
+    sensed_primitives = SENSED_PRIMITIVES
     urdf_path = _robot_file("sawyer_ar10.urdf")
     # Rubber against a hard object; the solver averages the two sides' coefficients.
     urdf_config = {  # noqa: RUF012  (ManiSkill reads a class attribute.)
@@ -93,11 +98,9 @@ class SawyerAR10(BaseAgent):
         """
         index = {joint.name: i for i, joint in enumerate(self.robot.active_joints)}
         qpos = np.zeros((*np.shape(arm)[:-1], len(index)), dtype=np.float32)
-        qpos[..., [index[name] for name in ARM_JOINTS]] = arm
-        qpos[..., [index[name] for name in self.hand.actuators]] = hand
-        for coupling in self.hand.couplings:
-            source = qpos[..., index[coupling.source]]
-            qpos[..., index[coupling.joint]] = coupling.ratio * source + coupling.offset
+        qpos[..., [index[name] for name in ARM_JOINT_NAMES]] = arm
+        for name, angle in self.hand.joint_angles(hand).items():
+            qpos[..., index[name]] = angle
         return qpos
 
     @property
@@ -137,7 +140,7 @@ class SawyerAR10(BaseAgent):
             for part, names in self.hand.part_links.items()
         }
         self.actuator_indices = self._indices(self.hand.actuators)
-        self.arm_indices = self._indices(ARM_JOINTS)
+        self.arm_indices = self._indices(ARM_JOINT_NAMES)
         self.thumb_rotation = self.hand.actuators.index(self.hand.thumb_rotation)
         self.finger_pip = [self.hand.actuators.index(c.source) for c in self.hand.couplings]
 
@@ -148,11 +151,27 @@ class SawyerAR10(BaseAgent):
     def reset(self, init_qpos: Tensor | np.ndarray | None = None) -> None:
         """Reset to `init_qpos`, else to `rest`: all-zero lies outside the hand's joint limits."""
         super().reset(self.keyframes["rest"].qpos if init_qpos is None else init_qpos)
+        for controller in self.controller.controllers.values():
+            controller.expect_reset()
+
+    def get_controller_state(self) -> dict[str, dict[str, Tensor]]:
+        """Everything that the controllers remember; observations show less."""
+        return {uid: c.memory() for uid, c in self.controller.controllers.items()}
+
+    def set_controller_state(
+        self, state: dict[str, dict[str, Tensor]], env_idx: Tensor | None = None
+    ) -> None:
+        """Take back what `get_controller_state` gave, for some environments or all."""
+        for uid, controller in self.controller.controllers.items():
+            controller.set_state(state.get(uid), env_idx)
 
     def set_plan(
         self, env_idx: Tensor, path: Tensor, preshape: Tensor, closing: Tensor, open_steps: int
     ) -> None:
-        """Give environments their arm path and postures; modes without a plan ignore it.
+        """Give environments their arm path and postures, during or after their reset.
+
+        Only the control mode in use takes them, and only modes that close along synergies do;
+        without a plan these hold the arm still.
 
         Args:
             env_idx: (n,) environments.
@@ -161,8 +180,7 @@ class SawyerAR10(BaseAgent):
             closing: (n, num_actuators) [rad] hand posture at activation 1.
             open_steps: control steps during which a palm residual may change.
         """
-        controllers = self.controller.controllers
-        arm, hand = controllers["arm"], controllers["hand"]
+        arm, hand = (self.controller.controllers[uid] for uid in ("arm", "hand"))
         if isinstance(arm, ArmPathController):
             arm.set_path(env_idx, path)
         if isinstance(arm, PalmResidualController):

@@ -44,3 +44,13 @@ PART_PRIMITIVES: dict[str, tuple[tuple[str, Primitive], ...]] = {
     for part, links in AR10.part_links.items()
 }
 """Sensed part, in observation order -> (link, collision primitive in that link's frame)."""
+
+SENSED_PRIMITIVES: dict[str, tuple[tuple[str, Primitive], ...]] = {
+    part: tuple(
+        (link, primitive)
+        for link, primitive in primitives
+        if part != "palm" or primitive.name in AR10.palm_shapes
+    )
+    for part, primitives in PART_PRIMITIVES.items()
+}
+"""The same without the wrist plate and the electronics, which are no palm to grasp with."""

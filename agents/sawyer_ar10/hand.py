@@ -34,6 +34,7 @@ AR10 = HandDescription(
         "little": _finger_links("pinky"),
         "thumb": ("thumb_metacarpal", "thumb_distal"),
     },
+    palm_shapes=("lower_palm", "upper_palm"),
     tip_links={
         "index": "index_distal",
         "middle": "middle_distal",

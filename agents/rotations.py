@@ -68,3 +68,18 @@ def rotation_vector(matrix: Tensor) -> Tensor:
         sine > 1e-7, angle / (2 * sine).clamp(min=1e-12), torch.full_like(sine, 0.5)
     )
     return skew * scale[..., None]
+
+
+def pose_error(pose: Tensor, position: Tensor, rotation: Tensor) -> Tensor:
+    """Twist that takes a pose to a wanted one.
+
+    Args:
+        pose: (n, 4, 4) homogeneous transform.
+        position: (n, 3) [m] wanted.
+        rotation: (n, 3, 3) wanted.
+
+    Returns:
+        (n, 6) [m, rad] displacement, then axis times angle, in the frame of the pose.
+    """
+    turn = rotation @ pose[:, :3, :3].transpose(1, 2)
+    return torch.cat([position - pose[:, :3, 3], rotation_vector(turn)], 1)
