@@ -10,7 +10,6 @@ the table") and the vectors of the object names. Same seed, same file.
 from __future__ import annotations
 
 import json
-import os
 import random
 import tempfile
 from dataclasses import asdict, dataclass
@@ -40,7 +39,7 @@ class LanguageConfig:
 
     out: Path = DEFAULT_OUT
     """Where to write the npz file."""
-    per_phrase: int = 10
+    per_phrase: int = 8
     """Sentences made of each phrase of the lexicon."""
     off_topic: int = 900
     """Sentences of the class "no action of the table"."""
@@ -71,7 +70,7 @@ def annotator_phrases(action: str) -> list[str]:
 
 def fill(phrase: Phrase, rng: random.Random) -> str:
     """One imperative from a phrase of the lexicon."""
-    all_names = sorted(load_lexicon().names)
+    all_names = sorted(load_knowledge().objects)
     used = objects_of(phrase.action)
     held = rng.choice(used) if used and rng.random() < 0.7 else rng.choice(all_names)
     target = rng.choice(TARGETS)
@@ -93,10 +92,12 @@ def fill(phrase: Phrase, rng: random.Random) -> str:
 
 def make_sentences(config: LanguageConfig) -> tuple[list[str], list[str]]:
     """Sentences and their actions, deduplicated in order."""
-    rng = random.Random(config.seed)
     pairs: dict[tuple[str, str], None] = {}
     for phrases in load_lexicon().phrases.values():
         for phrase in phrases:
+            rng = random.Random(
+                f"{config.seed} {phrase.action} {phrase.text} {sorted(phrase.nouns)}"
+            )
             for _ in range(config.per_phrase):
                 pairs[fill(phrase, rng), phrase.action] = None
     for action in load_knowledge().actions:
@@ -104,6 +105,7 @@ def make_sentences(config: LanguageConfig) -> tuple[list[str], list[str]]:
             pairs[text, action] = None
             for name in objects_of(action)[:4]:
                 pairs[f"{text} with the {name}", action] = None
+    rng = random.Random(config.seed)
     for _ in range(config.off_topic):
         sentence = f"{rng.choice(OFF_TOPIC_VERBS)} {rng.choice(OFF_TOPIC_NOUNS)}"
         pairs[sentence, NO_ACTION] = None
@@ -164,7 +166,7 @@ def save_atomically(path: Path, arrays: dict[str, np.ndarray]) -> None:
     with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
         np.savez_compressed(file, **arrays)
     Path(file.name).chmod(0o644)
-    os.replace(file.name, path)
+    Path(file.name).replace(path)
 
 
 def train(config: LanguageConfig) -> dict[str, object]:

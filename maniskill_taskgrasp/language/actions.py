@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from maniskill_taskgrasp.knowledge import load_knowledge
+from maniskill_taskgrasp.knowledge import PARAMETERS, load_knowledge
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.lexicon import load_lexicon, matches
+from maniskill_taskgrasp.language.words import word_map, word_set
 
 if TYPE_CHECKING:
     from maniskill_taskgrasp.language.clauses import Clause
@@ -20,6 +21,10 @@ NO_ACTION = "no action of the table"
 """The head's class for everything that is none of the 74 actions."""
 PHRASE_BONUS = 6.0  # Log-odds that the most specific matching phrase adds to its action.
 RANK_DISCOUNT = 1.5  # Taken off that bonus for the last phrase of an action's list.
+RESULT_SPECIFICITY = 3  # "Push it shut" says closing more surely than pushing.
+RESULTS = word_map("results")
+RESULTLESS = word_set("resultless")
+"""Verbs that keep a state instead of bringing it about: "hold the door open"."""
 VAGUE_BONUS = 2.0  # Log-odds of a phrase less specific than the best.
 
 
@@ -48,6 +53,8 @@ class ActionScores:
     """Probability that the words mean none of them."""
     known_verb: bool
     """The lexicon has a phrase for these words."""
+    particular: bool
+    """It has one for more than the verb alone."""
 
 
 @cache
@@ -64,10 +71,10 @@ def load_head() -> Head:
         )
 
 
-def phrase_bonus(clause: Clause, referents: frozenset[str] = frozenset()) -> dict[str, float]:
-    """Action -> log-odds from the lexicon; the most specific phrase counts most.
-
-    "take off" beats "take", and "make a call" beats "make".
+def matching_phrases(
+    clause: Clause, referents: frozenset[str] = frozenset()
+) -> dict[str, tuple[int, float]]:
+    """Action -> (specificity, -rank share) of its best phrase in the clause.
 
     Args:
         clause: what to match.
@@ -78,12 +85,20 @@ def phrase_bonus(clause: Clause, referents: frozenset[str] = frozenset()) -> dic
     sizes = _list_sizes()
     for phrase in load_lexicon().phrases.get(clause.verb, ()):
         if matches(phrase, clause.words, nouns):
-            rank = phrase.rank / sizes[phrase.action]
-            key = (phrase.specificity, -rank)
+            key = (phrase.specificity, -phrase.rank / sizes[phrase.action])
             found[phrase.action] = max(found.get(phrase.action, (0, -1.0)), key)
-    if not found:
-        return {}
-    best = max(specificity for specificity, _ in found.values())
+    result = next((RESULTS[w] for w in clause.words if w in RESULTS), None)
+    if result is not None and clause.verb not in RESULTLESS:
+        found[result] = (RESULT_SPECIFICITY, 0.0)
+    return found
+
+
+def phrase_bonus(found: dict[str, tuple[int, float]]) -> dict[str, float]:
+    """Action -> log-odds from its best phrase; the most specific phrase counts most.
+
+    "take off" beats "take", and "make a call" beats "make".
+    """
+    best = max((specificity for specificity, _ in found.values()), default=0)
     return {
         action: PHRASE_BONUS + RANK_DISCOUNT * rank if specificity == best else VAGUE_BONUS
         for action, (specificity, rank) in found.items()
@@ -117,7 +132,8 @@ def score_actions(clause: Clause, referents: frozenset[str] = frozenset()) -> Ac
         clause: what to match.
         referents: words for what its pronouns refer to.
     """
-    bonus = phrase_bonus(clause, referents)
+    found = matching_phrases(clause, referents)
+    bonus = phrase_bonus(found)
     classes = (*load_knowledge().actions, NO_ACTION)
     try:
         logits = meaning_logits(clause.text)
@@ -129,4 +145,11 @@ def score_actions(clause: Clause, referents: frozenset[str] = frozenset()) -> Ac
     probabilities = np.exp(logits - np.logaddexp.reduce(logits))
     order = [i for i in np.argsort(-probabilities) if classes[i] != NO_ACTION]
     ranked = tuple((classes[i], float(probabilities[i])) for i in order)
-    return ActionScores(ranked, no_action, bool(bonus))
+    particular = any(specificity > 1 for specificity, _ in found.values())
+    return ActionScores(ranked, no_action, bool(found), particular)
+
+
+def most_frequent_parameters(action: str) -> dict[str, str]:
+    """The value of each task parameter that people's rows show most often for an action."""
+    statistics = load_knowledge().actions[action].parameters
+    return {name: max(statistics[name], key=statistics[name].__getitem__) for name in PARAMETERS}

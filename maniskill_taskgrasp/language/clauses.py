@@ -25,7 +25,7 @@ from maniskill_taskgrasp.language.moods import (
 )
 from maniskill_taskgrasp.language.roles import Role, find_roles
 from maniskill_taskgrasp.language.verbs import base_of
-from maniskill_taskgrasp.language.words import word_set
+from maniskill_taskgrasp.language.words import word_map, word_set
 
 import_spacy()
 from spacy.language import Language  # noqa: E402
@@ -44,6 +44,8 @@ PREVERBAL = word_set("preverbal")
 INDEFINITE = word_set("indefinite")
 RECEIVED_ONLY = word_set("received_only")
 """Verbs that are transfers only with a receiver or a direction ("slide me the cup")."""
+RESULTS = word_map("results")
+"""States that a thing is brought into, with their actions: "push it shut"."""
 PERSONAL = SELF | RECEIVERS | frozenset(["you", "he", "she", "they", "who"])
 
 
@@ -73,6 +75,8 @@ class Clause:
         """First role of a kind, one that names an object before one that does not."""
         found = [r for r in self.roles if r.kind == kind]
         named = [r for r in found if r.mention is not None]
+        if len(named) > 1 and named[1].part_of and named[0].certainty < named[1].certainty:
+            return named[1]  # "The page of the book" is the book.
         return next(iter(named or found), None)
 
 
@@ -86,6 +90,8 @@ def _verb_tokens(doc: Doc) -> list[tuple[Token, str]]:
             continue
         if token.lower_ == "using" and len(doc) > 3 and token.i > 0:
             continue
+        if not framed and token.lower_ in RESULTS and doc[token.i - 1].pos_ in {"NOUN", "PROPN"}:
+            continue  # "Ease the drawer shut" has one verb.
         base = base_of(token.lower_) or base_of(token.lemma_.lower())
         main_auxiliary = token.pos_ == "AUX" and token.dep_ not in {"aux", "auxpass"}
         verbal = token.pos_ == "VERB" or (main_auxiliary and token.lemma_ != "be")
@@ -159,7 +165,9 @@ def _is_transfer(doc: Doc, token: Token, base: str, clause: Clause) -> bool:
     """Whether the verb asks for the object itself, and no phrase gives it another meaning."""
     verb = token.i
     if base in NEEDY and base not in TRANSFER_VERBS:
-        wanted = clause.role("target") is not None
+        subject = subject_of(token)
+        person = subject is None or subject.lower_ in PERSONAL
+        wanted = clause.role("target") is not None and person
         return wanted and (base != "have" or obligation(token) or doc[verb - 1].lower_ == "me")
     if base not in TRANSFER_VERBS | {"throw"}:
         return False
@@ -226,6 +234,8 @@ def _treated(token: Token) -> list[Token]:
     for verb in (token, token.head, token.head.head):
         for child in verb.children:
             before = child.i < token.i
+            if before and verb.dep_ == "relcl" and child.lower_ in {"that", "which"}:
+                return [t for t in verb.head.subtree if t.i < child.i]
             if before and (child.dep_ in {"nsubj", "nsubjpass"} or child.dep_ == "dobj"):
                 return list(child.subtree) if child.i != token.i else []
     return []
@@ -234,11 +244,13 @@ def _treated(token: Token) -> list[Token]:
 def _acted_on(token: Token) -> list[Token]:
     """Tokens before the verb that it acts on: passive subjects, "the screw must come out"."""
     if is_passive(token):
-        return [t for t in _treated(token) if t.i < token.i]
+        treated = [t for t in _treated(token) if t.i < token.i]
+        if token.dep_ != "relcl":
+            return treated
     if token.dep_ in {"acl", "relcl"} and token.head.pos_ in {"NOUN", "PROPN"}:
         return [t for t in token.head.subtree if t.i < token.i and t.dep_ not in {"aux", "nsubj"}]
     subject = subject_of(token)
-    if subject is not None and subject.head is token and subject.pos_ in {"NOUN", "PROPN"}:
+    if subject is not None and subject.pos_ in {"NOUN", "PROPN"} and subject.i < token.i:
         return list(subject.subtree) if obligation(token) else []
     return []
 

@@ -68,9 +68,15 @@ class SentenceEncoder:
         pooled = (hidden * weights).sum(1) / weights.sum(1)
         return pooled / np.linalg.norm(pooled, axis=1, keepdims=True)
 
-    def words(self) -> frozenset[str]:
-        """Whole words of the vocabulary: a list of common English."""
-        return frozenset(w for w in self._tokenizer.get_vocab() if w.isalpha())
+    def words(self, most: int | None = None) -> frozenset[str]:
+        """Whole words of the vocabulary, which lists them roughly by frequency.
+
+        Args:
+            most: only those among the first entries; all where None.
+        """
+        vocabulary = self._tokenizer.get_vocab()
+        limit = len(vocabulary) if most is None else most
+        return frozenset(w for w, i in vocabulary.items() if i < limit and w.isalpha())
 
 
 @cache

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from maniskill_taskgrasp.language.lexicon import load_lexicon
+from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, load_lexicon
 from maniskill_taskgrasp.language.model import import_spacy
+from maniskill_taskgrasp.language.words import word_set
 
 import_spacy()
 from spacy.language import Language  # noqa: E402
@@ -15,6 +16,9 @@ from spacy.tokens import Doc  # noqa: E402
 if TYPE_CHECKING:
     from spacy.tokens import Token
 
+POSSESSIVE = word_set("possessive")
+OWN_HAND = (("left hand", SYNONYM_SCORE),)
+"""What "hand" alone names; "your hands" are no object to grasp."""
 LONGEST_NAME = 5  # Words of the longest name.
 
 
@@ -61,14 +65,29 @@ def find_mentions(doc: Doc) -> tuple[Mention, ...]:
         for length in range(min(LONGEST_NAME + 4, len(doc) - at), 0, -1):
             tokens = list(doc[at : at + length])
             objects = _lookup(tokens)
-            if objects and not (length == 1 and is_used_as_verb(tokens[0])):
+            own_body = at > 0 and doc[at - 1].lower_ in POSSESSIVE and objects[:1] == OWN_HAND
+            if objects and not own_body and not (length == 1 and is_used_as_verb(tokens[0])):
                 span = doc[at : at + length]
                 found.append(Mention(at, at + length, span.root.i, objects, span.text))
                 at += length
                 break
         else:
             at += 1
-    return tuple(found)
+    return tuple(_join_contents(doc, found))
+
+
+def _join_contents(doc: Doc, mentions: list[Mention]) -> list[Mention]:
+    """Make one mention of a container and its contents: "bottle of laundry detergent"."""
+    joined: list[Mention] = []
+    for mention in mentions:
+        before = joined[-1] if joined else None
+        (name, _), *_rest = mention.objects
+        if before and doc[before.end : mention.start].text == "of" and name.endswith(before.words):
+            span = doc[before.start : mention.end]
+            joined[-1] = Mention(before.start, mention.end, before.head, mention.objects, span.text)
+        else:
+            joined.append(mention)
+    return joined
 
 
 def is_used_as_verb(token: Token) -> bool:

@@ -16,6 +16,7 @@ Mood = Literal["request", "wish", "statement"]
 CARRIERS = word_set("carriers")
 """Verbs that hand their meaning to a verbal complement ("I want you to ...")."""
 OBLIGATIONS = word_set("obligations")
+MODALS = word_set("modals")
 FORBIDDING = word_set("forbidding")
 NEGATIONS = word_set("negations")
 SELF = word_set("self")
@@ -72,14 +73,12 @@ def subject_of(verb: Token) -> Token | None:
 def obligation(verb: Token) -> bool:
     """Whether a modal or a carrier makes the verb something to be done."""
     tokens = [verb, *carriers_of(verb)]
-    lemmas = {t.lemma_.lower() for t in tokens[1:]} | {
-        c.lower_ for t in tokens for c in t.children if c.dep_ in {"aux", "auxpass"}
-    }
+    heads = {t.lemma_.lower() for t in tokens[1:]} & OBLIGATIONS
+    modal = any(c.lower_ in MODALS and c.dep_ == "aux" for t in tokens for c in t.children)
     going = any(t.lower_ == "going" for t in tokens)
-    be_to = any(t.lemma_ == "be" for t in tokens[1:]) and any(
-        c.lower_ == "to" for c in verb.children
-    )
-    return bool(lemmas & OBLIGATIONS) or going or be_to
+    to_be = {c.lower_ for c in verb.children if c.dep_ in {"aux", "auxpass"}}
+    be_to = "to" in to_be and any(t.lemma_ == "be" for t in [*tokens[1:], *verb.lefts])
+    return bool(heads) or modal or going or be_to
 
 
 def is_passive(verb: Token) -> bool:
@@ -98,6 +97,9 @@ def _is_told(verb: Token) -> bool:
     marks = {c.lower_ for c in verb.children if c.dep_ in {"mark", "advmod"}}
     infinitive = any(c.lower_ == "to" for c in verb.children)
     if verb.dep_ == "relcl" and not infinitive:
+        return not (is_passive(verb) and obligation(verb))
+    perfect = any(c.lemma_ == "have" and c.dep_ == "aux" for c in verb.children)
+    if perfect and not marks & {"once", "after", "when"}:
         return True
     if "if" in marks:
         return verb.head.lemma_ not in CARRIERS
@@ -132,7 +134,7 @@ def mood_of(verb: Token) -> Mood:
 def is_negated(verb: Token) -> bool:
     """Whether the verb, or a verb that carries it, is denied."""
     chain = [verb, *carriers_of(verb)]
-    if verb.dep_ == "conj" and any(c.lower_ == "or" for c in verb.head.children):
+    if verb.dep_ == "conj" and any(c.lower_ in {"or", "nor"} for c in verb.head.children):
         chain.append(verb.head)
     for token in chain:
         if token.lemma_ in {"mind", "like"} and token is not verb:
@@ -142,6 +144,8 @@ def is_negated(verb: Token) -> bool:
     if any(token.lemma_.lower() in FORBIDDING for token in chain[1:]):
         return True
     head = verb.head
+    if head.head.lemma_ in FORBIDDING and head.pos_ == "ADP":
+        return True
     if verb.dep_ in {"pcomp", "pobj"} and head.pos_ in {"ADP", "SCONJ"}:
         lead = verb.doc[head.i - 1].lower_ if head.i else ""
         return head.lower_ == "without" or lead in {"instead", "rather"}

@@ -27,6 +27,9 @@ CONTENT_ACTIONS = word_set("content_actions")
 """Actions whose target is what comes out; the hand holds the container."""
 PLACING_ACTIONS = word_set("placing_actions")
 """Actions whose place is where the object goes, never what is held."""
+POURED_ACTIONS = frozenset(["spraying", "aiming", "oiling", "applying"])
+HOLDER_WORDS = word_set("holder_words")
+"""Words of things that `POURED_ACTIONS` come out of, so that they are what is held."""
 WORK_ACTIONS = word_set("work_actions")
 """Tool actions whose target is what is worked on, unless people held that very object."""
 FIXTURES = word_set("fixtures")
@@ -41,7 +44,7 @@ PHONING = frozenset(["calling", "texting", "talking on phone"])
 HELD_AT_PLACE = {
     "wiping": frozenset(["towel", "cloth", "washcloth", "paper towel", "tissue"]),
     "drying": frozenset(["towel", "cloth", "washcloth", "paper towel", "tissue"]),
-    "measuring": frozenset(["scale", "bathroom scale"]),
+    "measuring": frozenset(["scale", "bathroom scale", "measuring cup"]),
     "writing": frozenset(["computer"]),
 }
 """Tools that English puts behind "on": "dry your hands on the towel"."""
@@ -133,9 +136,9 @@ def from_data(action: str, besides: tuple[tuple[str, float], ...] = ()) -> Held:
 
 
 def antecedent(task: Task) -> Mention | None:
-    """What "it" refers to: the latest object named before the clause."""
-    earlier = task.source.earlier
-    return earlier[-1] if earlier else None
+    """What "it" refers to: the latest object named before the clause, else the next after it."""
+    source = task.source
+    return next(iter((*reversed(source.earlier), *source.later)), None)
 
 
 def is_worked_on(name: str, action: str) -> bool:
@@ -144,6 +147,8 @@ def is_worked_on(name: str, action: str) -> bool:
         return False
     if name in FIXTURES:
         return True
+    if action in POURED_ACTIONS and any(w in HOLDER_WORDS for w in name.split()):
+        return False
     return action in WORK_ACTIONS and (name, action) not in load_knowledge().pair_counts
 
 
@@ -157,11 +162,11 @@ def _from_role(role: Role, task: Task) -> Held | None:
     return from_words(role.text)
 
 
-def _from_acted_on(mention: Mention, action: str) -> Held:
+def _from_acted_on(mention: Mention, task: Task, action: str) -> Held:
     """The named target, or the data's tool where the target is only worked on."""
     held = from_mention(mention)
     if held.name is not None and is_worked_on(held.name, action):
-        return from_data(action, ((held.name, held.score),))
+        return _spoken_of(task, action) or from_data(action, ((held.name, held.score),))
     return held
 
 
@@ -207,10 +212,10 @@ def _target(task: Task, clause: Clause, action: str) -> Held | None:
     if target is None:
         return None
     if target.mention is not None:
-        return _from_acted_on(target.mention, action)
+        return _from_acted_on(target.mention, task, action)
     if target.pronoun:
         before = antecedent(task)
-        return _from_acted_on(before, action) if before is not None else None
+        return _from_acted_on(before, task, action) if before is not None else None
     return None
 
 
@@ -222,6 +227,15 @@ def _elsewhere(clause: Clause, action: str) -> Held | None:
             continue
         if not is_worked_on(role.mention.objects[0][0], action):
             return from_mention(role.mention)
+    return None
+
+
+def _spoken_of(task: Task, action: str) -> Held | None:
+    """An object named before that people use for the action: "the pen, I must sign"."""
+    usual = {name for name, _ in used_for(action)}
+    for mention in reversed(task.source.earlier):
+        if mention.objects[0][0] in usual:
+            return from_mention(mention)
     return None
 
 
@@ -246,7 +260,7 @@ def choose_object(task: Task, action: str | None) -> Held:
         return held
     target = clause.role("target")
     if action in TOOL_ACTIONS:
-        return from_data(action)
+        return _spoken_of(task, action) or from_data(action)
     if target is not None and not target.pronoun:
         return from_words(target.text)
     before = antecedent(task) if target is None else None

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, load_lexicon
-from maniskill_taskgrasp.language.roles import SOMETHING, Role
+from maniskill_taskgrasp.language.roles import PLACE_WORDS, SOMETHING, Role, governor
 from maniskill_taskgrasp.language.words import word_set
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 USE_VERBS = word_set("use_verbs")
 PREPARING_VERBS = word_set("preparing_verbs")
 """Verbs that, before another request, only say what to do it with."""
+ABSTRACT = word_set("abstract")
+"""Things that are asked for but not handed over: "I need help"."""
 SEE_VERBS = word_set("see_verbs")
 """Verbs that point at something without a task for the hand: "see the hammer?"."""
 
@@ -30,6 +32,8 @@ class Told:
     clause: Clause
     earlier: tuple[Mention, ...]
     """Objects named before this clause, oldest first, without those that were ruled out."""
+    later: tuple[Mention, ...] = ()
+    """Objects named after it, for a pronoun that runs ahead of its noun."""
 
 
 @dataclass(frozen=True)
@@ -74,26 +78,39 @@ def ruled_out(segment: Segment, doc: Doc, mention: Mention) -> bool:
     return ("not" in before and "should" not in before) or before[-3:-1] == ["anything", "but"]
 
 
+def is_place(doc: Doc, mention: Mention) -> bool:
+    """Whether an object is named only as where something is ("the pliers on the bench")."""
+    return mention.start > 1 and governor(doc, mention.start, -1) in PLACE_WORDS
+
+
 def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
     """All clauses of the text, in the order of doing."""
     seen: dict[int, list[Mention]] = {}
     before: list[Mention] = []
     for k, (segment, doc) in enumerate(zip(segments, docs, strict=True)):
         seen[k] = list(before)
-        before += [m for m in doc._.mentions if not ruled_out(segment, doc, m)]
+        meant = [m for m in doc._.mentions if not ruled_out(segment, doc, m)]
+        before += sorted(meant, key=lambda m: not is_place(doc, m))
     told = []
     for k in order_segments(segments):
+        if segments[k].asking:
+            continue
         for clause in docs[k]._.clauses:
             own = [m for m in docs[k]._.mentions if m.end <= clause.at]
-            told.append(Told(clause, (*seen[k], *own)))
+            later = [m for doc in docs[k + 1 :] for m in doc._.mentions]
+            told.append(Told(clause, (*seen[k], *own), tuple(later)))
     return told
+
+
+def _forbids(told: Told) -> bool:
+    return told.clause.negated and told.clause.mood != "statement"
 
 
 def contradiction(told: list[Told]) -> str | None:
     """The verb that is both asked for and forbidden for the same thing, if there is one."""
     for yes in told:
         for no in told:
-            if yes.clause.negated or not no.clause.negated or yes.clause.verb != no.clause.verb:
+            if not _is_asked(yes) or not _forbids(no) or yes.clause.verb != no.clause.verb:
                 continue
             asked, denied = yes.clause.role("target"), no.clause.role("target")
             unclear = asked is None or denied is None or asked.pronoun or denied.pronoun
@@ -124,6 +141,9 @@ def held_role(clause: Clause) -> Role | None:
 
 def _is_asked(told: Told) -> bool:
     clause = told.clause
+    target = clause.role("target")
+    if clause.transfer and target is not None and target.text in ABSTRACT:
+        return False
     left_alone = clause.verb == "leave" and "alone" in clause.words
     only_pointed = clause.verb in SEE_VERBS
     return clause.mood != "statement" and not clause.negated and not left_alone and not only_pointed
@@ -172,8 +192,9 @@ def make_tasks(told: list[Told]) -> list[Task]:
 
 
 def _is_wish_without_tool(task: Task) -> bool:
-    wished = task.told is not None and task.told.clause.mood == "wish"
-    return wished and task.preparation is None
+    if task.told is None or task.preparation is not None:
+        return False
+    return task.told.clause.mood == "wish" or task.told.clause.purpose
 
 
 def _alone(told: Told | None) -> list[Task]:

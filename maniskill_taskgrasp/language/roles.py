@@ -33,9 +33,16 @@ class Role:
     mention: Mention | None = None
     """The object it names; None for a pronoun or a noun that the lexicon does not know."""
     pronoun: bool = False
+    part_of: bool = False
+    """It stands behind "of"."""
+
+    @property
+    def certainty(self) -> float:
+        """How surely its words name an object; 0 where they name none."""
+        return self.mention.objects[0][1] if self.mention is not None else 0.0
 
 
-def _governor(doc: Doc, start: int, low: int) -> str | None:
+def governor(doc: Doc, start: int, low: int) -> str | None:
     """The preposition (or "using") that leads a noun phrase, None for a bare one."""
     for at in range(start - 1, low, -1):
         token = doc[at]
@@ -91,15 +98,16 @@ def find_roles(
         mention = named.get(at)
         stop = verb if at > verb else low - 1
         if mention is not None and not mention.start <= verb < mention.end:
-            kind = _kind_of(_governor(doc, mention.start, stop)) if at > verb else "target"
-            roles.append(Role(kind, mention.words, mention.start, mention))
+            kind = _kind_of(governor(doc, mention.start, stop)) if at > verb else "target"
+            of = any(t.lower_ == "of" for t in doc[max(0, mention.start - 2) : mention.start])
+            roles.append(Role(kind, mention.words, mention.start, mention, part_of=of))
             at = mention.end
             continue
         if at != verb and token.lower_ in PRONOUNS and token.dep_ not in {"det", "mark", "expl"}:
-            kind = _kind_of(_governor(doc, at, stop)) if at > verb else "target"
+            kind = _kind_of(governor(doc, at, stop)) if at > verb else "target"
             roles.append(Role(kind, token.lower_, at, pronoun=True))
         elif at != verb and _is_noun(token):
-            kind = _kind_of(_governor(doc, at, stop)) if at > verb else "target"
+            kind = _kind_of(governor(doc, at, stop)) if at > verb else "target"
             roles.append(Role(kind, _phrase(token), at))
         at += 1
     if not any(r.kind == "target" for r in roles):

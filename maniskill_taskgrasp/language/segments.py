@@ -8,10 +8,10 @@ from typing import Literal
 
 from maniskill_taskgrasp.language.lexicon import load_lexicon
 from maniskill_taskgrasp.language.text import FILLERS, OPENER, strip_opener
-from maniskill_taskgrasp.language.words import word_set
+from maniskill_taskgrasp.language.words import word_list, word_set
 
 CONNECTORS = word_set("connectors")
-NEGATORS = ("do not ", "don't ", "never ", "not to ", "no need to ", "there's no need to ", "not ")
+NEGATORS = tuple(f"{words.strip()} " for words in word_list("negators"))
 DETERMINERS = word_set("determiners")
 PARTICLES = word_set("particles")
 AFTER_VERB = (
@@ -22,9 +22,25 @@ AFTER_VERB = (
 """Words that follow a verb at the start of a new request."""
 IMPERATIVE_ONLY = word_set("imperative_only")
 """Base verbs that start an imperative without naming an action of the data."""
-LEADING_TOOL = re.compile(r"(?:with|using|by|in|on|at|from)\s[^,]+?,\s*(?=\w)")
+LEADING_TOOL = re.compile(r"(?:with|using|via|by|in|on|at|from)\s[^,]+?,\s*(?=\w)")
 """A phrase before the imperative that belongs behind it: "with the ruler, measure it"."""
+ASKING = re.compile(
+    r"(?:what|who|whose|when|where|why|how|which)\s(?:is|are|was|were|do|does|did|has|have|haven't|"
+    r"will|would|can|many|much|old|long|far|tall|thick|wide|often)\b"
+    r"|do you (?:have|know|like|love|believe|own)\b|(?:having|being)\s"
+)
+"""Questions for an answer in words, and participles: they ask for nothing to be done."""
+FUNCTION_WORDS = word_set("english_words") | CONNECTORS | FILLERS
 NEW_SUBJECT = re.compile(r",\s+(?=(?:i|i'm|i'll|i'd|we|we'll|you)\s)")
+
+TELLING_WORDS = frozenset(
+    ["i", "he", "she", "they", "we", "it", "who", "the", "a", "an", "my", "of", "to"]
+)
+"""Words after which a base form tells rather than asks ("they open the door")."""
+SPEAKING = word_set("imperative_only") & word_set("refused_verbs") - {"leave"}
+"""Imperatives that ask for words, not for deeds, whatever follows: "remind me to call"."""
+SUBJECT_WORDS = word_set("subject_words")
+"""Words that start a clause of another kind: subjects, question words, auxiliaries."""
 
 Order = Literal["after next", "as told"]
 
@@ -40,6 +56,10 @@ class Segment:
     negated: bool
     order: Order = "as told"
     """"after next" where "before ..." puts it behind the segment that follows."""
+    inner: str | None = None
+    """The framed imperative somewhere inside, for when nothing else is understood."""
+    asking: bool = False
+    """It is a question for an answer in words."""
 
 
 def _is_request_start(words: list[str], at: int) -> bool:
@@ -67,7 +87,10 @@ def split_requests(sentence: str) -> list[str]:
             boundary = words[i] in CONNECTORS or words[i - 1].endswith(",")
             inside = words[i - 1] in CONNECTORS and not words[i - 1].endswith(",")
             lone_verb = i - start < 2 and not words[i - 1].endswith(",")
-            if boundary and not inside and not lone_verb and _is_request_start(words, i):
+            choice = words[i] in {"or", "nor"}
+            lead = LEADING_TOOL.fullmatch(" ".join([*words[start:i], ""]))
+            joined = inside or lone_verb or choice or lead
+            if boundary and not joined and _is_request_start(words, i):
                 parts.append(" ".join(words[start:i]))
                 start = i
         parts.append(" ".join(words[start:]))
@@ -75,10 +98,15 @@ def split_requests(sentence: str) -> list[str]:
 
 
 def _starts_request(body: str) -> bool:
-    """Whether the first word is an imperative."""
+    """Whether the first word is an imperative; an unknown word before an article may be one."""
     first = body.partition(" ")[0].strip(",")
     asks_person = re.match(r"(do|have|will|would|can|could) (you|we|i)\b", body)
-    return first in load_lexicon().verbs | IMPERATIVE_ONLY and not asks_person
+    if first in load_lexicon().verbs | IMPERATIVE_ONLY:
+        return not asks_person
+    second = body.partition(" ")[2].partition(" ")[0]
+    grammar = first in FUNCTION_WORDS | SUBJECT_WORDS or not first.replace("-", "").isalpha()
+    noun_or_grammar = grammar or first in load_lexicon().names
+    return second in {"the", "a", "an", "my", "this", "that", "up"} and not noun_or_grammar
 
 
 def _move_lead_behind(body: str) -> str:
@@ -94,6 +122,18 @@ def _move_lead_behind(body: str) -> str:
     return body
 
 
+def _inner_request(body: str) -> str | None:
+    """An imperative inside a segment that does not start with one: "task three open the door"."""
+    words = body.split()
+    for at in range(1, len(words)):
+        told = words[at - 1] in TELLING_WORDS or any(
+            w in {"not", "n't", "never"} for w in words[:at]
+        )
+        if not told and words[at] in load_lexicon().verbs and _is_request_start(words, at):
+            return OPENER + " ".join(words[at:])
+    return None
+
+
 def frame(part: str) -> Segment:
     """Put "you should (not)" before an imperative; leave anything else as it is."""
     order: Order = "after next" if part.startswith("before ") else "as told"
@@ -104,8 +144,10 @@ def frame(part: str) -> Segment:
             body, negated = body[len(negator) :], True
             break
     body = body if negated else _move_lead_behind(strip_opener(body))
+    inner = None if ASKING.match(body) else _inner_request(body)
     if _starts_request(body):
         framed = OPENER + ("not " if negated else "") + body
     else:
         framed = "not " + body if negated else body
-    return Segment(part, framed, negated, order)
+    speaking = body.partition(" ")[0] in SPEAKING
+    return Segment(part, framed, negated, order, inner, speaking or bool(ASKING.match(body)))

@@ -16,6 +16,7 @@ from maniskill_taskgrasp.language.words import word_set
 LONG_WORD = 8  # From this length on two slips are forgiven, before it one.
 MEDIUM_WORD = 6  # Shorter words are corrected to likely words only.
 LIKELY_SLIP = 0.65  # Cost (`_cost`) of one slip in a likely word, or of a swap in any.
+COMMON = 8000  # Entries of the encoder's vocabulary, most frequent first, that count as common.
 SHORTEST = 3  # Shorter words are left as they are.
 MAX_UNKNOWN = 6  # More unknown words than this are no slips; it also bounds the time.
 EXTRA_WORDS = word_set("extra_words")
@@ -74,6 +75,15 @@ def known_words() -> frozenset[str]:
 
 
 @cache
+def common_words() -> frozenset[str]:
+    """English words so common that they are meant as they stand."""
+    try:
+        return load_encoder().words(most=COMMON)
+    except EncoderMissingError:
+        return domain_words()
+
+
+@cache
 def _by_length() -> dict[int, tuple[tuple[str, Counter[str]], ...]]:
     lengths: dict[int, list[tuple[str, Counter[str]]]] = {}
     for word in sorted(domain_words()):
@@ -96,7 +106,7 @@ def nearest_word(word: str) -> str | None:
     """
     most = 2 if len(word) >= LONG_WORD else 1
     letters = Counter(word)
-    best: tuple[float, str] | None = None
+    best: tuple[float, int, str] | None = None
     for length in range(len(word) - most, len(word) + most + 1):
         for candidate, others in _by_length().get(length, ()):
             if sum((letters - others).values()) > most or sum((others - letters).values()) > most:
@@ -104,10 +114,10 @@ def nearest_word(word: str) -> str | None:
             distance = slip_distance(word, candidate, most)
             far = distance == most == 2 and candidate not in likely_words()
             if distance <= most and not far:
-                key = (_cost(word, candidate, distance), candidate)
+                key = (_cost(word, candidate, distance), -length, candidate)
                 best = min(best, key) if best else key
     limit = most if len(word) >= MEDIUM_WORD else LIKELY_SLIP
-    return best[1] if best is not None and best[0] <= limit else None
+    return best[-1] if best is not None and best[0] <= limit else None
 
 
 def _two_words(word: str) -> str | None:
@@ -161,7 +171,7 @@ def respell_name(words: str) -> str | None:
             slip, meant = wrong[0]
             unfinished = meant.startswith(slip) and len(meant) <= len(slip) + 2
             near = slip[0] == meant[0] and slip_distance(slip, meant, 1) == 1
-            common = len(parts) == 1 and slip in known_words() and slip not in base_forms()
+            common = len(parts) == 1 and slip in common_words() and slip not in base_forms()
             if (unfinished or near) and not common:
                 return name
     return None

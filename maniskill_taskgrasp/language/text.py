@@ -27,7 +27,7 @@ IDIOMS = word_map("idioms")
 QUOTES = str.maketrans("’‘“”„«»`´", '\'\'"""""\'\'')
 HESITATION = re.compile(r"\b(?:u+h+|u+m+|h+m+|e+r+m*|ah+)\b,?|\blike,\s")
 SELF_CORRECTION = re.compile(
-    r"\b(?:the|a|an|my|your)\s(?:[\w-]+\s){0,3}?[\w-]+,?\s(?:no|i mean|sorry|or rather),?\s"
+    r"(?:^|\b(?:the|a|an|my|your)\s)(?:[\w-]+\s){0,3}?[\w-]+,?\s(?:no|i mean|sorry|or rather),?\s"
     r"(?=(?:the|a|an|my|your)\s)"
 )
 """What a speaker takes back: "the stapler, no, the tape"."""
@@ -43,6 +43,7 @@ def clean(text: str) -> str:
     kept = (c if unicodedata.category(c)[0] not in "CS" or c in "&$+<>=^`|~" else " " for c in text)
     text = "".join(kept).translate(QUOTES).lower()
     text = re.sub(r"</?\w{1,8}>", " ", text)
+    text = re.sub(r"(?<=[a-z])/(?=[a-z])", " or ", text)
     text = re.sub(r"[\"()\[\]{}*_#<>|\\^~=+]", " ", text)
     text = re.sub(r"\.{2,}|\s[-–—]+\s|--+|[–—]", " , ", text)
     text = re.sub(r"([.!?,;:])\1+", r"\1", text)

@@ -6,8 +6,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from maniskill_taskgrasp.errors import echo
-from maniskill_taskgrasp.knowledge import PARAMETERS, load_knowledge
-from maniskill_taskgrasp.language.actions import ActionScores, score_actions
+from maniskill_taskgrasp.language.actions import (
+    ActionScores,
+    most_frequent_parameters,
+    score_actions,
+)
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.guard import TRY, refuse
 from maniskill_taskgrasp.language.instruction import Instruction, Rejected
@@ -18,22 +21,21 @@ from maniskill_taskgrasp.language.plan import Task, contradiction, make_tasks, t
 from maniskill_taskgrasp.language.segments import frame, split_requests
 from maniskill_taskgrasp.language.spelling import correct, correct_verb
 from maniskill_taskgrasp.language.text import FILLERS, MAX_SEGMENTS, clean, split_sentences
+from maniskill_taskgrasp.language.words import word_set
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc
 
+    from maniskill_taskgrasp.language.clauses import Clause
     from maniskill_taskgrasp.language.segments import Segment
 
 MEANING_MINIMUM = 0.35  # Probability by which meaning alone may name the action of an unknown verb.
+NAMED_MINIMUM = 0.2  # The same where the clause names an object of the data.
+REFUSED_VERBS = word_set("refused_verbs")
+"""Verbs that are no task for a hand, whatever their nouns."""
 NO_ACTION_MAXIMUM = 0.5  # Probability of "none of the 74" above which an unknown verb is refused.
 TRANSFER_NOTE = "the words ask for a transfer, not a use: the object's usual actions decide"
 LIGHTER_NOTE = "the sentence encoder is not installed ({}): only listed phrases are understood"
-
-
-def most_frequent_parameters(action: str) -> dict[str, str]:
-    """The value of each task parameter that people's rows show most often for an action."""
-    statistics = load_knowledge().actions[action].parameters
-    return {name: max(statistics[name], key=statistics[name].__getitem__) for name in PARAMETERS}
 
 
 def read_segments(text: str) -> tuple[list[Segment], list[Doc]]:
@@ -42,6 +44,14 @@ def read_segments(text: str) -> tuple[list[Segment], list[Doc]]:
     segments = [frame(part) for part in parts[:MAX_SEGMENTS]]
     docs = list(load_model().pipe([segment.framed for segment in segments]))
     return segments, docs
+
+
+def read_inner(segments: list[Segment], docs: list[Doc]) -> list[Doc]:
+    """Docs anew, with the imperative inside each segment that has one."""
+    return [
+        load_model()(segment.inner) if segment.inner else doc
+        for segment, doc in zip(segments, docs, strict=True)
+    ]
 
 
 def understand(text: str, object_override: str | None = None) -> Instruction | Rejected:
@@ -82,6 +92,9 @@ def understand_clean(
     if bare is not None and object_override is None:
         return bare_request(text, cleaned, bare, notes)
     answers = [answer(task, text, object_override) for task in make_tasks(told)]
+    if not answers:
+        told = tell(segments, read_inner(segments, docs))
+        answers = [answer(task, text, object_override) for task in make_tasks(told)]
     understood = [a for a in answers if isinstance(a, Instruction)]
     if not understood:
         return explain_refusal(text, answers, docs)
@@ -151,11 +164,15 @@ def explain_refusal(text: str, answers: list[Instruction | Rejected], docs: list
     return Rejected(text, f"{echo(text)} is no task for a hand: {TRY}", "off_topic")
 
 
-def is_meant(scores: ActionScores) -> bool:
+def is_meant(clause: Clause, scores: ActionScores) -> bool:
     """Whether the words mean one of the 74 actions at all."""
+    if clause.verb in REFUSED_VERBS and not scores.particular:
+        return False
     if scores.known_verb:
         return True
-    return scores.ranked[0][1] >= MEANING_MINIMUM and scores.no_action <= NO_ACTION_MAXIMUM
+    named = any(r.certainty == 1 for r in clause.roles)
+    least = NAMED_MINIMUM if named else MEANING_MINIMUM
+    return scores.ranked[0][1] >= least and scores.no_action <= NO_ACTION_MAXIMUM
 
 
 def referents(task: Task) -> frozenset[str]:
@@ -170,7 +187,7 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
     scores = None
     if task.told is not None:
         scores = score_actions(task.told.clause, referents(task))
-        if not is_meant(scores):
+        if not is_meant(task.told.clause, scores):
             if task.transfer and task.preparation is not None:
                 return answer(Task(None, task.held, task.preparation), text, object_override)
             reason = f"no action of the data fits {echo(task.told.clause.text)}: {TRY}"
