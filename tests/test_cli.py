@@ -49,7 +49,7 @@ def run(capsys, *args):
 @pytest.mark.parametrize(
     ("args", "names"),
     [
-        (("grasp", ""), "''"),
+        (("grasp", ""), "empty"),
         (("grasp", "xyzzy"), "xyzzy"),
         (("grasp", "hand me the mug", "--object", "nosuch"), "nosuch"),
         (("grasp", "hand me the mug", "--topology", "nosuch"), "nosuch"),
