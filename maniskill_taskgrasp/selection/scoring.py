@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -50,7 +51,7 @@ def predictions(
 
 def evaluate(
     name: str, model: Model, table: GraspTable, split: str, folder: Path
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """Figures of a model on a split, all in fractions except NLL [nats].
 
     Returns:
