@@ -6,6 +6,7 @@ grasp that was asked for; this file tells the two apart from forces alone.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 
@@ -19,12 +20,8 @@ TOUCH_FORCE = 0.05  # [N] a digit touches from here on.
 SURFACE_ANGLE = 60.0  # [deg] a contact this close to the arc from pad to end is on good surface.
 BACK_COSINE = -0.5  # Normal against the pad's direction: the back of the digit.
 GOOD_SHARE = 0.5  # Least share of a digit's force on good surface.
-UNNAMED_SHARE = 0.10  # Most force on fingers that the name does not list.
-PALM_SHARE = {
-    "Precision": 0.05,
-    "Power": 0.25,
-    "Intermediate": 0.25,
-}  # Most force on the palm in pad types.
+UNNAMED_SHARE = 0.10  # Most force on digits that the name does not list.
+PALM_SHARE = {"Precision": 0.05, "Power": 0.25}  # Most force on the palm in pad types.
 THUMB_ABDUCTED = 1.10  # [rad] commanded thumb rotation between adducted and abducted.
 STRAIGHT_PIP = 0.5  # [rad] most bend of a finger in a parallel extension.
 PALM_NORMAL = 0.5  # Least component of the contact normal along the palm's.
@@ -43,8 +40,30 @@ class ContactShares:
     distal: Tensor
 
 
+def arc_cosine(normal: Tensor, pad: Tensor, end: Tensor) -> Tensor:
+    """Cosine of the angle between directions and the quarter circle from a pad to an end.
+
+    Args:
+        normal: (..., 3) unit directions.
+        pad: (..., 3) unit direction that the quarter circle starts at.
+        end: (..., 3) unit direction that it ends at, square to `pad`.
+
+    Returns:
+        (...)
+    """
+    along_pad, along_end = (normal * pad).sum(-1), (normal * end).sum(-1)
+    between = (along_pad >= 0) & (along_end >= 0)
+    return torch.where(
+        between, torch.hypot(along_pad, along_end), torch.maximum(along_pad, along_end)
+    )
+
+
 class ContactSurfaces:
-    """Sorts a hand's link forces into good surface, back and last link, part by part."""
+    """Sorts a hand's link forces into good surface, back and last link, part by part.
+
+    The pad's quarter circle of the last link serves the whole digit; the thumb's other link has
+    its working side in the middle of it.
+    """
 
     def __init__(self, hand: HandDescription, link_names: list[str], device: torch.device) -> None:
         owner = {link: PARTS.index(p) for p, links in hand.part_links.items() for link in links}
@@ -68,12 +87,8 @@ class ContactSurfaces:
         force = link_forces.norm(dim=-1)
         normal = -link_forces / force.clamp(min=1e-9)[..., None]
         along_pad = (normal * self._pad).sum(-1)
-        along_end = (normal * self._end).sum(-1)
-        on_arc = (along_pad >= 0) & (along_end >= 0)
-        inside = torch.sqrt(along_pad**2 + along_end**2)
-        cosine = torch.where(on_arc, inside, torch.maximum(along_pad, along_end))
-        good = cosine >= torch.cos(torch.deg2rad(torch.tensor(SURFACE_ANGLE)))
-        # The palm works with its face, whose normal is +y; its pad arc says so too.
+        good = arc_cosine(normal, self._pad, self._end) >= math.cos(math.radians(SURFACE_ANGLE))
+        # The palm works with its face, whose normal is +y, as that of a finger's pad.
         palm = self.part_of_link == PALM
         good = torch.where(palm, along_pad >= PALM_NORMAL, good)
         return ContactShares(
@@ -92,18 +107,47 @@ class ContactSurfaces:
 def _topology_table(device: torch.device) -> dict[str, Tensor]:
     """What each topology asks for; every column is (15, ...)."""
     parts = torch.tensor([[part in t.parts for part in PARTS] for t in TOPOLOGIES])
+    side = torch.tensor([t.opposition == "Side" for t in TOPOLOGIES])
+    digits = torch.tensor([part != "palm" for part in PARTS]).expand_as(parts).clone()
+    digits[:, THUMB] = side  # Elsewhere the thumb is named or has a clause of its own.
     columns = {
         "parts": parts,
+        "unnamed": digits & ~parts,
         "fingers": parts[:, FINGERS],
         # Three of four are enough where the name lists all four fingers.
         "needed": parts[:, FINGERS].sum(1).clamp(max=3),
         "abducted": torch.tensor([t.thumb_abducted for t in TOPOLOGIES]),
         "pad": torch.tensor([t.opposition == "Pad" for t in TOPOLOGIES]),
-        "palm": torch.tensor([t.opposition == "Palm" for t in TOPOLOGIES]),
+        "side": side,
         "precision": torch.tensor([t.pip == "Precision" for t in TOPOLOGIES]),
-        "palm_share": torch.tensor([PALM_SHARE[t.pip] for t in TOPOLOGIES]),
+        "palm_share": torch.tensor([PALM_SHARE.get(t.pip, 1.0) for t in TOPOLOGIES]),
     }
     return {name: column.to(device) for name, column in columns.items()}
+
+
+@dataclass(frozen=True)
+class _Grasp:
+    """A batch of grasps beside what was asked for."""
+
+    shares: ContactShares
+    asked: dict[str, Tensor]
+    thumb_rotation: Tensor
+    pip: Tensor
+
+    @property
+    def touches(self) -> Tensor:
+        """(num_envs, num_parts) bool"""
+        return self.shares.force >= TOUCH_FORCE
+
+    @property
+    def total(self) -> Tensor:
+        """(num_envs,) [N]"""
+        return self.shares.force.sum(1)
+
+    @property
+    def abducted(self) -> Tensor:
+        """(num_envs,) bool: the thumb stands opposite the fingers."""
+        return self.thumb_rotation >= THUMB_ABDUCTED
 
 
 def in_topology(
@@ -111,60 +155,54 @@ def in_topology(
 ) -> Tensor:
     """Is the hand in the topology it was asked for?
 
+    Pad and palm types follow fact sheet "grasping", section 6. Side types are ours: every part that
+    the topology names touches; as everywhere, unnamed digits (here the thumb too) carry little.
+
     Args:
         shares: forces averaged over the last moments of the hold.
         topology_index: (num_envs,) long, `topology.TOPOLOGIES`.
-        thumb_rotation: (num_envs,) [rad] commanded rotation of the thumb.
+        thumb_rotation: (num_envs,) [rad] rotation of the thumb.
         pip: (num_envs, 4) [rad] middle joints of index, middle, ring, little.
 
     Returns:
         (num_envs,) bool
     """
     asked = {k: v[topology_index] for k, v in _topology_table(shares.force.device).items()}
-    touches = shares.force >= TOUCH_FORCE
-    total = shares.force.sum(1).clamp(min=1e-9)
-    unnamed = (shares.force[:, FINGERS] * ~asked["fingers"]).sum(1) <= UNNAMED_SHARE * total
-    abducted = thumb_rotation >= THUMB_ABDUCTED
-    side = (touches | ~asked["parts"]).all(1)
-    pad = _fingers_work(shares, touches, asked) & _pad(shares, touches, asked, abducted, pip, total)
-    palm = _fingers_work(shares, touches, asked) & _palm(shares, touches, asked, abducted, total)
-    return unnamed & torch.where(asked["pad"], pad, torch.where(asked["palm"], palm, side))
+    grasp = _Grasp(shares, asked, thumb_rotation, pip)
+    unnamed = (shares.force * asked["unnamed"]).sum(1)
+    named = (grasp.touches | ~asked["parts"]).all(1)
+    opposed = torch.where(asked["pad"], _pad_opposes(grasp), _palm_opposes(grasp))
+    contacts = torch.where(asked["side"], named, _fingers_work(grasp) & opposed)
+    return contacts & (unnamed <= UNNAMED_SHARE * grasp.total)
 
 
-def _fingers_work(shares: ContactShares, touches: Tensor, asked: dict[str, Tensor]) -> Tensor:
+def _fingers_work(grasp: _Grasp) -> Tensor:
     """Enough named fingers press with their pads; in precision types with the last link."""
-    force = shares.force[:, FINGERS]
-    works = touches[:, FINGERS] & (shares.good[:, FINGERS] >= GOOD_SHARE * force)
-    works &= (shares.distal[:, FINGERS] >= GOOD_SHARE * force) | ~asked["precision"][:, None]
-    return (works & asked["fingers"]).sum(1) >= asked["needed"]
+    shares, asked = grasp.shares, grasp.asked
+    enough = GOOD_SHARE * shares.force
+    works = grasp.touches & (shares.good >= enough)
+    works &= (shares.distal >= enough) | ~asked["precision"][:, None]
+    return (works[:, FINGERS] & asked["fingers"]).sum(1) >= asked["needed"]
 
 
-def _pad(
-    shares: ContactShares,
-    touches: Tensor,
-    asked: dict[str, Tensor],
-    abducted: Tensor,
-    pip: Tensor,
-    total: Tensor,
-) -> Tensor:
+def _pad_opposes(grasp: _Grasp) -> Tensor:
     """The thumb's pad or end opposes, little is left to the palm, adducted fingers are straight."""
-    thumb = touches[:, THUMB] & (shares.good[:, THUMB] >= GOOD_SHARE * shares.force[:, THUMB])
-    bend = torch.where(touches[:, FINGERS], pip, torch.zeros_like(pip)).amax(1)
+    shares, asked = grasp.shares, grasp.asked
+    thumb = grasp.touches[:, THUMB]
+    thumb = thumb & (shares.good[:, THUMB] >= GOOD_SHARE * shares.force[:, THUMB])
+    bend = (grasp.pip * grasp.touches[:, FINGERS]).amax(1)
     straight = asked["abducted"] | (bend <= STRAIGHT_PIP)
-    return thumb & straight & abducted & (shares.force[:, PALM] <= asked["palm_share"] * total)
+    palm = shares.force[:, PALM] <= asked["palm_share"] * grasp.total
+    return thumb & grasp.abducted & straight & palm
 
 
-def _palm(
-    shares: ContactShares,
-    touches: Tensor,
-    asked: dict[str, Tensor],
-    abducted: Tensor,
-    total: Tensor,
-) -> Tensor:
+def _palm_opposes(grasp: _Grasp) -> Tensor:
     """The palm's face carries, and the thumb stands where the name says."""
-    thumb = shares.force[:, THUMB]
-    not_back = shares.back[:, THUMB] <= GOOD_SHARE * thumb
-    face = touches[:, PALM] & (shares.good[:, PALM] >= GOOD_SHARE * shares.force[:, PALM])
-    opposing = touches[:, THUMB] & not_back & abducted
-    beside = ~abducted & (not_back | (thumb < UNNAMED_SHARE * total))
-    return face & torch.where(asked["abducted"], opposing, beside)
+    force, back = grasp.shares.force[:, THUMB], grasp.shares.back[:, THUMB]
+    face = grasp.shares.good[:, PALM] >= TOUCH_FORCE
+    not_back = back <= GOOD_SHARE * force
+    opposite = grasp.touches[:, THUMB] & not_back & grasp.abducted
+    beside = (grasp.thumb_rotation <= THUMB_ABDUCTED) & (
+        not_back | (force < UNNAMED_SHARE * grasp.total)
+    )
+    return face & torch.where(grasp.asked["abducted"], opposite, beside)
