@@ -16,6 +16,7 @@ import tyro
 from tyro.conf import OmitSubcommandPrefixes, Positional, subcommand
 
 from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.train.evaluation_config import EvaluateConfig
 
 BAR_WIDTH = 24  # Characters of a probability bar.
 
@@ -175,6 +176,30 @@ class Topologies(Output):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Evaluate(EvaluateConfig, Output):
+    """Measure how often grasps lift, and lift in the named topology, with intervals.
+
+    Example: taskgrasp evaluate --table paper --episodes 100 --out reports/table1
+    """
+
+    def run(self) -> None:
+        """Print the table; write it, a report and pictures where a folder is given."""
+        with _quiet():
+            from maniskill_taskgrasp.train.evaluate import evaluate
+            from maniskill_taskgrasp.train.tables import table_lines
+
+            document = evaluate(self)
+            if self.out is not None:
+                from maniskill_taskgrasp.train.report import write_report
+
+                print(f"report: {write_report(self.out)}", file=sys.stderr)
+        if self.json:
+            print(json.dumps(document))
+            return
+        print("\n".join(table_lines(document)))
+
+
+@dataclass(frozen=True, kw_only=True)
 class ObjectsList(Output):
     """List the library's objects."""
 
@@ -291,6 +316,7 @@ class Data:
 Command = (
     Annotated[Grasp, subcommand("grasp")]
     | Annotated[Select, subcommand("select")]
+    | Annotated[Evaluate, subcommand("evaluate")]
     | Annotated[Topologies, subcommand("topologies")]
     | Annotated[Objects, subcommand("objects")]
     | Annotated[Data, subcommand("data")]
@@ -331,6 +357,7 @@ def _parse(args: list[str] | None) -> Any:
     plain = re.sub(r"\x1b\[[0-9;]*m|[╭╮╰╯│─]", " ", complaint.getvalue())
     lines = [" ".join(line.split()) for line in plain.splitlines()]
     text = " ".join(line for line in lines if line and not line.startswith("Parsing error"))
+    text = re.sub(r"^Value error Error parsing \w+: (.*) For full helptext.*$", r"\1", text)
     raise InputError(text or "the arguments make no sense; see taskgrasp --help")
 
 
