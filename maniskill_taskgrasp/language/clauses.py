@@ -96,7 +96,8 @@ def _verb_tokens(doc: Doc) -> list[tuple[Token, str]]:
         main_auxiliary = token.pos_ == "AUX" and token.dep_ not in {"aux", "auxpass"}
         verbal = token.pos_ == "VERB" or (main_auxiliary and token.lemma_ != "be")
         gerund = token.lower_.endswith("ing") and base is not None and _is_gerund(token)
-        if framed or verbal or gerund:
+        participle = token.dep_ == "acomp" and base is not None and token.lower_ != base
+        if framed or verbal or gerund or (participle and token.lower_.endswith(("ed", "en"))):
             found.append((token, base or token.lemma_.lower()))
     return found
 
@@ -153,6 +154,8 @@ def _needed_noun(token: Token) -> int | None:
     subject = subject_of(token)
     if subject is None or subject.lower_ in PERSONAL:
         return None
+    if token.i + 1 < len(token.doc) and token.nbor().lower_.endswith("ing"):
+        return token.i + 1 if base_of(token.nbor().lower_) else None
     for child in token.subtree:
         treated = child.dep_ in {"dobj", "pobj"} and child.i > token.i
         article = [c.lower_ for c in child.children if c.dep_ == "det"]
@@ -190,8 +193,13 @@ def build_clauses(doc: Doc) -> tuple[Clause, ...]:
         starts.append(_start(token, floor))
         floor = token.i + 1
     clauses: list[Clause] = []
+    needed = -1
     for k, (token, base) in enumerate(verbs):
-        high = starts[k + 1] if k + 1 < len(verbs) else len(doc)
+        if token.i == needed:
+            continue  # "Needs folding" is one clause.
+        needed = _needed_noun(token) or -1
+        behind = k + 1 + (k + 1 < len(verbs) and verbs[k + 1][0].i == needed)
+        high = starts[behind] if behind < len(verbs) else len(doc)
         clause = _build(doc, token, base, max(high, token.i + 1))
         if clause is not None:
             clauses.append(clause)
@@ -251,7 +259,8 @@ def _acted_on(token: Token) -> list[Token]:
         return [t for t in token.head.subtree if t.i < token.i and t.dep_ not in {"aux", "nsubj"}]
     subject = subject_of(token)
     if subject is not None and subject.pos_ in {"NOUN", "PROPN"} and subject.i < token.i:
-        return list(subject.subtree) if obligation(token) else []
+        asked = obligation(token) or token.lemma_ in NEEDING
+        return list(subject.subtree) if asked else []
     return []
 
 
@@ -259,8 +268,7 @@ def _build(doc: Doc, token: Token, base: str, high: int) -> Clause | None:
     """The clause of one verb, None where it only carries another."""
     needed = _needed_noun(token)
     if needed is not None:
-        subject = subject_of(token)
-        told = list(subject.subtree) if subject is not None else []
+        told = _acted_on(token)
         low = min((t.i for t in told), default=token.i)
         clause = _finish(doc, token, base_of(doc[needed].lower_) or base, needed, low, high, told)
         return replace(clause, mood="request", purpose=False)
@@ -277,7 +285,7 @@ def _build(doc: Doc, token: Token, base: str, high: int) -> Clause | None:
     clause = _finish(doc, token, base, token.i, low, high, told)
     if not _is_transfer(doc, token, base, clause):
         return clause
-    asks = clause.mood == "statement" and base in {"need", "want", "like"}
+    asks = clause.mood == "statement" and base in NEEDY and base != "have"
     return replace(clause, transfer=True, mood="request" if asks else clause.mood)
 
 
@@ -296,7 +304,12 @@ def _finish(
         told: tokens before `verb` that it acts on, for the text.
     """
     mentions = tuple(m for m in doc._.mentions if not m.start <= verb < m.end)
-    words = tuple(w for t in doc[token.i + 1 : high] if t.i != verb for w in (t.lower_, t.lemma_))
+    words = tuple(
+        word
+        for t in doc[token.i + 1 : high]
+        if t.i != verb and not _leads_place(t, verb)
+        for word in (t.lower_, t.lemma_)
+    )
     hangs = token.dep_ in {"advcl", "relcl", "acl", "pcomp"} or any(
         c.lower_ in {"to", "so"} and c.dep_ in {"aux", "mark"} for c in token.children
     )
@@ -318,6 +331,13 @@ def _finish(
     )
 
 
+def _leads_place(token: Token, verb: int) -> bool:
+    """Whether "on" or "in" leads a place ("hang it on the hook") and is no part of the verb."""
+    if token.lower_ not in {"on", "in"} or token.i == verb + 1 or token.dep_ != "prep":
+        return False
+    return any(child.dep_ == "pobj" for child in token.children)
+
+
 def _taskgrasp_clauses(doc: Doc) -> Doc:
     """Fill `doc._.clauses`."""
     doc._.clauses = build_clauses(doc)
@@ -326,7 +346,7 @@ def _taskgrasp_clauses(doc: Doc) -> Doc:
 
 @Language.factory(
     "taskgrasp_clauses",
-    requires=["token.pos", "token.dep", "token.lemma", "token.tag", "doc._.mentions"],
+    requires=["token.tag", "token.dep", "token.lemma", "doc._.mentions"],
     assigns=["doc._.clauses"],
 )
 def make_taskgrasp_clauses(nlp: Language, name: str) -> object:

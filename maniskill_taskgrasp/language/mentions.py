@@ -103,7 +103,7 @@ def _taskgrasp_objects(doc: Doc) -> Doc:
 
 @Language.factory(
     "taskgrasp_objects",
-    requires=["token.lemma", "token.pos", "token.dep"],
+    requires=["token.lemma", "token.tag", "token.dep"],
     assigns=["doc._.mentions"],
 )
 def make_taskgrasp_objects(nlp: Language, name: str) -> object:

@@ -76,7 +76,7 @@ def obligation(verb: Token) -> bool:
     heads = {t.lemma_.lower() for t in tokens[1:]} & OBLIGATIONS
     modal = any(c.lower_ in MODALS and c.dep_ == "aux" for t in tokens for c in t.children)
     going = any(t.lower_ == "going" for t in tokens)
-    to_be = {c.lower_ for c in verb.children if c.dep_ in {"aux", "auxpass"}}
+    to_be = {c.lower_ for t in tokens for c in t.children if c.dep_ in {"aux", "auxpass"}}
     be_to = "to" in to_be and any(t.lemma_ == "be" for t in [*tokens[1:], *verb.lefts])
     return bool(heads) or modal or going or be_to
 
@@ -85,6 +85,8 @@ def is_passive(verb: Token) -> bool:
     """Whether the subject is what the verb is done to: "is opened", "needs opening"."""
     if any(child.dep_ in {"auxpass", "nsubjpass"} for child in verb.children):
         return True
+    if verb.dep_ == "acomp":
+        return True  # "Is to be unscrewed", parsed as an adjective.
     head = verb.head
     needs = head.lemma_ in {"need", "want", "require", "deserve"} and head is not verb
     gerund = verb.lower_.endswith("ing") and verb.dep_ in {"dobj", "xcomp", "ccomp"}

@@ -138,7 +138,9 @@ def from_data(action: str, besides: tuple[tuple[str, float], ...] = ()) -> Held:
 def antecedent(task: Task) -> Mention | None:
     """What "it" refers to: the latest object named before the clause, else the next after it."""
     source = task.source
-    return next(iter((*reversed(source.earlier), *source.later)), None)
+    pronoun = any(role.pronoun for role in source.clause.roles)
+    later = source.later if pronoun else ()
+    return next(iter((*reversed(source.earlier), *later)), None)
 
 
 def is_worked_on(name: str, action: str) -> bool:

@@ -37,8 +37,8 @@ TELLING_WORDS = frozenset(
     ["i", "he", "she", "they", "we", "it", "who", "the", "a", "an", "my", "of", "to"]
 )
 """Words after which a base form tells rather than asks ("they open the door")."""
-SPEAKING = word_set("imperative_only") & word_set("refused_verbs") - {"leave"}
-"""Imperatives that ask for words, not for deeds, whatever follows: "remind me to call"."""
+SPEAKING = word_set("speaking")
+"""Imperatives that are no task for the hand, whatever follows: "remind me to call"."""
 SUBJECT_WORDS = word_set("subject_words")
 """Words that start a clause of another kind: subjects, question words, auxiliaries."""
 
@@ -88,7 +88,7 @@ def split_requests(sentence: str) -> list[str]:
             inside = words[i - 1] in CONNECTORS and not words[i - 1].endswith(",")
             lone_verb = i - start < 2 and not words[i - 1].endswith(",")
             choice = words[i] in {"or", "nor"}
-            lead = LEADING_TOOL.fullmatch(" ".join([*words[start:i], ""]))
+            lead = LEADING_TOOL.match(" ".join([*words[start:i], "x"]))
             joined = inside or lone_verb or choice or lead
             if boundary and not joined and _is_request_start(words, i):
                 parts.append(" ".join(words[start:i]))
@@ -144,7 +144,7 @@ def frame(part: str) -> Segment:
             body, negated = body[len(negator) :], True
             break
     body = body if negated else _move_lead_behind(strip_opener(body))
-    inner = None if ASKING.match(body) else _inner_request(body)
+    inner = None if negated or ASKING.match(body) else _inner_request(body)
     if _starts_request(body):
         framed = OPENER + ("not " if negated else "") + body
     else:

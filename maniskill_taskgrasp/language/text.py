@@ -27,8 +27,8 @@ IDIOMS = word_map("idioms")
 QUOTES = str.maketrans("’‘“”„«»`´", '\'\'"""""\'\'')
 HESITATION = re.compile(r"\b(?:u+h+|u+m+|h+m+|e+r+m*|ah+)\b,?|\blike,\s")
 SELF_CORRECTION = re.compile(
-    r"(?:^|\b(?:the|a|an|my|your)\s)(?:[\w-]+\s){0,3}?[\w-]+,?\s(?:no|i mean|sorry|or rather),?\s"
-    r"(?=(?:the|a|an|my|your)\s)"
+    r"(?:^[\w-]+,?\s|\b(?:the|a|an|my|your)\s(?:[\w-]+\s){0,3}?[\w-]+,?\s)"
+    r"(?:no|i mean|sorry|or rather),?\s(?=(?:the|a|an|my|your)\s)"
 )
 """What a speaker takes back: "the stapler, no, the tape"."""
 
@@ -49,9 +49,11 @@ def clean(text: str) -> str:
     text = re.sub(r"([.!?,;:])\1+", r"\1", text)
     words = [SHORTHAND.get(w, w) for w in HESITATION.sub(" ", text).split()]
     text = " ".join(w for w in words if w and len(w) <= MAX_WORD)
-    text = SELF_CORRECTION.sub("", text)
+    text = re.sub(r"\s+([.,;:!?])", r"\1", text)
     for phrase, plain in IDIOMS.items():
-        text = re.sub(rf"\b{re.escape(phrase)}\b", plain, text)
+        if phrase in text:
+            text = re.sub(rf"\b{re.escape(phrase)}\b", plain, text)
+    text = SELF_CORRECTION.sub("", text)
     text = re.sub(r"\s+", " ", text)
     text = re.sub(r"\s+([.,;:!?])", r"\1", text)
     return re.sub(r",[\s,]*,", ",", text).strip(" ,")

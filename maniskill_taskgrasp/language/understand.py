@@ -30,10 +30,11 @@ if TYPE_CHECKING:
     from maniskill_taskgrasp.language.segments import Segment
 
 MEANING_MINIMUM = 0.35  # Probability by which meaning alone may name the action of an unknown verb.
-NAMED_MINIMUM = 0.2  # The same where the clause names an object of the data.
+NAMED_MINIMUM = 0.25  # The same where the clause names an object of the data.
 REFUSED_VERBS = word_set("refused_verbs")
 """Verbs that are no task for a hand, whatever their nouns."""
 NO_ACTION_MAXIMUM = 0.5  # Probability of "none of the 74" above which an unknown verb is refused.
+BY_MEANING = "no listed phrase has "
 TRANSFER_NOTE = "the words ask for a transfer, not a use: the object's usual actions decide"
 LIGHTER_NOTE = "the sentence encoder is not installed ({}): only listed phrases are understood"
 
@@ -62,7 +63,11 @@ def understand(text: str, object_override: str | None = None) -> Instruction | R
         return refused
     corrected, notes = correct(cleaned)
     result = understand_clean(text, corrected, notes, object_override)
-    if isinstance(result, Rejected) and result.kind in {"no_action", "off_topic"}:
+    if isinstance(result, Rejected):
+        doubtful = result.kind in {"no_action", "off_topic"}
+    else:
+        doubtful = any(note.startswith(BY_MEANING) for note in result.notes)
+    if doubtful:
         again, more = correct_verb(corrected, 0)
         if more:
             second = understand_clean(text, again, (*notes, *more), object_override)
@@ -200,7 +205,10 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
         if scores is not None and held.guessed and scores.no_action > NO_ACTION_MAXIMUM:
             reason = f"no action of the data fits {echo(task.source.clause.text)}: {TRY}"
             return Rejected(text, reason, "off_topic")
-    notes = [n for n in (held.note, TRANSFER_NOTE if action is None else None) if n]
+    by_meaning = None
+    if task.told is not None and scores is not None and not scores.known_verb:
+        by_meaning = f"{BY_MEANING}{task.told.clause.verb!r}: took the nearest action in meaning"
+    notes = [n for n in (by_meaning, held.note, TRANSFER_NOTE if action is None else None) if n]
     return Instruction(
         text=task.source.clause.text,
         action=action,
