@@ -23,8 +23,10 @@ from maniskill_taskgrasp.selection.paper import (
     predict,
 )
 
-SCORED_ROWS = 6_500
+SCORED_ROWS = 2_000
 """Rows of the test, and as many of the training, that are scored after every epoch."""
+KEPT_EVERY = 10
+"""Epochs between two saved states."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,64 +53,83 @@ def train_leaking(
     state_path: Path,
     watch: Callable[[dict[str, float]], None],
 ) -> tuple[list[dict[str, float]], dict]:
-    """Train on three of four parts of the noise copies, scoring the fourth after every epoch.
+    """Train on all parts of the noise copies but one, scoring that one after every epoch.
 
-    Interrupted runs go on from `state_path`, written after every epoch.
+    Interrupted runs go on from `state_path`, written every `KEPT_EVERY` epochs.
 
     Returns:
         The curve, one dict per epoch (hit@1, match@3, own@1, o, p in [0, 1], `train_o` and
         `train_p` on as many training rows), and the last epoch's {"thresholds", "confusion"}.
     """
+    data = _copies(table, config)
+    rng = np.random.default_rng(config.seed)
+    part = rng.permutation(config.rows) % config.folds
+    train, test = np.flatnonzero(part != config.fold), np.flatnonzero(part == config.fold)
+    watched, known = rng.permutation(test)[:SCORED_ROWS], rng.permutation(train)[:SCORED_ROWS]
+    trainer = PaperTrainer(data.inputs[train], data.targets.take(train), config.batch, config.seed)
+    curve = _restored(trainer, config, state_path)
+    while trainer.epochs < config.epochs:
+        loss = trainer.epoch()
+        fitted = _score(trainer.network, data, known)
+        point = {"epoch": trainer.epochs, "loss": loss, **_score(trainer.network, data, watched)}
+        curve.append(point | {"train_o": fitted["o"], "train_p": fitted["p"]})
+        watch(point)
+        if trainer.epochs % KEPT_EVERY == 0 or trainer.epochs == config.epochs:
+            _keep(trainer, config, curve, state_path)
+    scores, opposition, pip = predict(trainer.network, data.inputs[test])
+    targets = data.targets.take(test)
+    return curve, {
+        "thresholds": threshold_curve(scores, targets.labels),
+        "confusion": {
+            "opposition": confusion(opposition.argmax(1), targets.opposition, 3),
+            "pip": confusion(pip.argmax(1), targets.pip, 3),
+        },
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class _Copies:
+    """Noise copies of the rows with what is known of each."""
+
+    inputs: np.ndarray
+    targets: Targets
+    observed: np.ndarray
+
+
+def _copies(table: GraspTable, config: PaperConfig) -> _Copies:
     inputs, source = augmented(
         paper_features(table), config.rows, config.sigma, len(CONTINUOUS), config.seed
     )
     # Labels are the full-table union, as published; that is the first leak, the copies the second.
     targets = paper_targets(table, table.label_sets).take(source)
-    observed = table.topology[source]
-    part = np.random.default_rng(config.seed).permutation(len(inputs)) % config.folds
-    train, test = np.flatnonzero(part != config.fold), np.flatnonzero(part == config.fold)
-    trainer = PaperTrainer(inputs[train], targets.take(train), config.batch, config.seed)
-    curve: list[dict[str, float]] = []
-    if state_path.exists():
-        saved = torch.load(state_path, weights_only=True)
-        if saved["config"] == asdict(config) | {"epochs": saved["config"]["epochs"]}:
+    return _Copies(inputs, targets, table.topology[source])
+
+
+def _restored(trainer: PaperTrainer, config: PaperConfig, path: Path) -> list[dict[str, float]]:
+    """The curve so far, the trainer set where it ended; a run of another recipe is ignored."""
+    if path.exists():
+        saved = torch.load(path, weights_only=True)
+        if saved["config"] | {"epochs": config.epochs} == asdict(config):
             trainer.restore(saved["trainer"])
-            curve = saved["curve"]
-    watched = np.random.default_rng(config.seed).permutation(test)[:SCORED_ROWS]
-    known = np.random.default_rng(config.seed).permutation(train)[:SCORED_ROWS]
-    while trainer.epochs < config.epochs:
-        loss = trainer.epoch()
-        values = _score(trainer.network, inputs, targets, observed, watched)
-        fitted = _score(trainer.network, inputs, targets, observed, known)
-        point = {"epoch": trainer.epochs, "loss": loss, **values}
-        point |= {"train_o": fitted["o"], "train_p": fitted["p"]}
-        curve.append(point)
-        watch(point)
-        content = {"config": asdict(config), "trainer": trainer.state(), "curve": curve}
-        partial = state_path.with_name(state_path.name + ".partial")
-        torch.save(content, partial)
-        partial.replace(state_path)
-    scores = predict(trainer.network, inputs[test])
-    return curve, {
-        "thresholds": threshold_curve(scores[0], targets.labels[test]),
-        "confusion": {
-            "opposition": confusion(scores[1].argmax(1), targets.opposition[test], 3),
-            "pip": confusion(scores[2].argmax(1), targets.pip[test], 3),
-        },
-    }
+            return saved["curve"]
+    return []
 
 
-def _score(
-    network: PaperNetwork,
-    inputs: np.ndarray,
-    targets: Targets,
-    observed: np.ndarray,
-    rows: np.ndarray,
-) -> dict[str, float]:
-    scores, opposition, pip = predict(network, inputs[rows])
-    values = per_row(scores, observed[rows], targets.labels[rows])
+def _keep(
+    trainer: PaperTrainer, config: PaperConfig, curve: list[dict[str, float]], path: Path
+) -> None:
+    partial = path.with_name(path.name + ".partial")
+    content = {"config": asdict(config), "trainer": trainer.state(), "curve": curve}
+    torch.save(content, partial)
+    partial.replace(path)
+
+
+def _score(network: PaperNetwork, data: _Copies, rows: np.ndarray) -> dict[str, float]:
+    scores, opposition, pip = predict(network, data.inputs[rows])
+    targets = data.targets.take(rows)
+    values = per_row(scores, data.observed[rows], targets.labels)
     return {
         **{name: float(values[name].mean()) for name in ("hit@1", "match@3", "own@1")},
-        "o": float((opposition.argmax(1) == targets.opposition[rows]).mean()),
-        "p": float((pip.argmax(1) == targets.pip[rows]).mean()),
+        "o": float((opposition.argmax(1) == targets.opposition).mean()),
+        "p": float((pip.argmax(1) == targets.pip).mean()),
     }
