@@ -1,0 +1,84 @@
+"""What the hand can hold: limits that decide, and the human ranking that they leave alone."""
+
+from dataclasses import replace
+
+import pytest
+
+from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.knowledge import Affordance, load_knowledge
+from maniskill_taskgrasp.selection import feasible
+from maniskill_taskgrasp.selection.feasibility import REACH, closing_extents
+from maniskill_taskgrasp.topology import TOPOLOGIES
+
+ROD = Affordance("rod", (0.14, 0.04, 0.04), 0.1, "b/c", "rigid", "a", "prolate", "cylinder")
+
+
+@pytest.mark.parametrize("topology", TOPOLOGIES, ids=lambda t: t.slug)
+def test_limits_decide_and_are_named(topology):
+    """Each topology takes its limits' edges and refuses what is just beyond, saying the number."""
+    reach = REACH[topology.name]
+    for extent in (reach.thickest_m, max(reach.thinnest_m, 0.001)):
+        fits = replace(ROD, dimensions_m=(0.15, extent, extent), mass_kg=reach.payload_kg)
+        assert feasible(topology, fits)[0]
+    wide = reach.thickest_m + 0.001
+    able, why = feasible(topology, replace(ROD, dimensions_m=(0.15, wide, wide), mass_kg=0.01))
+    assert not able
+    assert f"{1000 * wide:.4g} mm" in why
+    heavy = replace(fits, mass_kg=reach.payload_kg + 0.001)
+    able, why = feasible(topology, heavy)
+    assert not able
+    assert " g" in why
+
+
+def test_heavier_or_wider_never_helps():
+    """Feasibility is monotone in mass, and in size above the least extent."""
+    for topology in TOPOLOGIES:
+        masses = [
+            feasible(topology, replace(ROD, dimensions_m=(0.15, 0.03, 0.03), mass_kg=m))[0]
+            for m in (0.05, 0.15, 0.25, 0.35, 0.5)
+        ]
+        assert masses == sorted(masses, reverse=True)
+
+
+def test_one_fitting_extent_is_enough():
+    """A book too wide to span is held across its thickness."""
+    book = replace(ROD, dimensions_m=(0.15, 0.11, 0.03), grasped_dimension="b/c")
+    assert closing_extents(book) == (0.03, 0.11)
+    assert feasible("power palm abd 2-5", book)[0]
+    spine_up = replace(book, grasped_dimension="b")
+    assert not feasible("power palm abd 2-5", spine_up)[0]
+
+
+def test_floppy_objects_are_refused():
+    """Zero extents are a code, not a size that fits."""
+    towel = load_knowledge().affordance("towel")
+    for topology in TOPOLOGIES:
+        able, why = feasible(topology, towel)
+        assert not able
+        assert "floppy" in why
+
+
+def test_reasons_are_one_line():
+    """Every answer for every object is one clause."""
+    for affordance in load_knowledge().objects.values():
+        for topology in TOPOLOGIES:
+            assert "\n" not in feasible(topology, affordance)[1]
+
+
+def test_half_of_what_people_did_remains():
+    """The rule keeps at least half of the rigid (object, topology) pairs that people showed."""
+    knowledge = load_knowledge()
+    shown = {
+        (obj, index)
+        for (obj, _), counts in knowledge.pair_counts.items()
+        for index, rows in enumerate(counts)
+        if rows and not knowledge.objects[obj].is_floppy
+    }
+    kept = [feasible(TOPOLOGIES[i], knowledge.objects[obj])[0] for obj, i in shown]
+    assert sum(kept) >= len(kept) / 2
+
+
+def test_unknown_topology_is_input_error():
+    """A wrong name is refused with a close one."""
+    with pytest.raises(InputError, match="power palm abd 2-5"):
+        feasible("power palm abd 25", ROD)
