@@ -439,6 +439,7 @@ def test_many_environments_stay_small(make):
 def test_back_end_is_chosen_by_what_there_is(make, monkeypatch):
     """auto: one environment is plain CPU, more are CUDA where there is one, else the batch."""
     assert make(1).backend.sim_backend == "physx_cpu"
+    assert make(1, sim_backend=mixin.BATCHED_BACKEND).gpu_sim_enabled
     assert make(2).backend.sim_backend == mixin.BATCHED_BACKEND and make(2).gpu_sim_enabled
     asked = []
     monkeypatch.setattr(torch.cuda, "is_available", lambda: True)

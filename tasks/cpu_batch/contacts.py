@@ -25,7 +25,7 @@ class ContactTable:
         # Slot 2r counts for row r, slot 2r + 1 against it. Bodies hash by identity.
         self._pair_slots: dict[Any, dict[Any, int]] = {}
         self._body_slots: dict[Any, int] = {}
-        self._num_rows = 0
+        self._row_env: list[int] = []
         self._watched = np.zeros(len(systems), dtype=bool)
         self._void = np.zeros(len(systems), dtype=bool)
         self._table: np.ndarray | None = None
@@ -47,10 +47,10 @@ class ContactTable:
         return self._body_slots[body] // 2, 1
 
     def _new_slot(self, body: Any) -> int:
+        self._row_env.append(self._env_of[body])
         self._watched[self._env_of[body]] = True
         self._table = None
-        self._num_rows += 1
-        return 2 * (self._num_rows - 1)
+        return 2 * (len(self._row_env) - 1)
 
     def stepped(self) -> None:
         """A physics step has passed: everything known is out of date."""
@@ -60,7 +60,8 @@ class ContactTable:
     def clear(self, envs: Sequence[int]) -> None:
         """These environments are put into a new state: their contacts are void until a step."""
         self._void[envs] = True
-        self._table = None
+        if self._table is not None:
+            self._table[self._void[self._row_env]] = 0.0
 
     def table(self) -> np.ndarray:
         """(rows, 3) [Ns] impulses of the last physics step."""
@@ -70,7 +71,8 @@ class ContactTable:
 
     def _read(self) -> np.ndarray:
         found = self._find()
-        table = np.zeros((self._num_rows, 3), dtype=np.float32)
+        num_rows = len(self._row_env)
+        table = np.zeros((num_rows, 3), dtype=np.float32)
         if not found:
             return table
         impulses: list[np.ndarray] = []
@@ -82,7 +84,7 @@ class ContactTable:
         slots = [slot for hit, _ in found for slot in hit]
         weights = np.repeat(sums, [len(hit) for hit, _ in found], axis=0)
         for axis in range(3):
-            signed = np.bincount(slots, weights[:, axis], minlength=2 * self._num_rows)
+            signed = np.bincount(slots, weights[:, axis], minlength=2 * num_rows)
             table[:, axis] = signed[0::2] - signed[1::2]
         return table
 

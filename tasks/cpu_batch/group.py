@@ -51,6 +51,7 @@ class EnvGroup:
         self._number()
         self._stale = np.ones(len(self.scenes), dtype=bool)
         self._moving_stale = True
+        self._awake = False  # Drive targets were sent since the last step.
         env_of = dict(zip(self.bodies, self.body_env.tolist(), strict=True))
         self._contacts = ContactTable(self.systems, env_of)
 
@@ -106,10 +107,11 @@ class EnvGroup:
         self.arrays = arrays
         width = arrays.qpos.shape[1]
         joint, dofs = np.arange(width), self.dofs[:, None]
+        self._exists = joint < dofs  # The rest is padding.
         start = self._root_source.min(axis=1, initial=self._state.size)[:, None] + BODY
 
         def padded(source: np.ndarray) -> np.ndarray:
-            return np.where(joint < dofs, source, self._state.size - 1)
+            return np.where(self._exists, source, self._state.size - 1)
 
         self._qpos_source = padded(start + joint)
         self._qvel_source = padded(start + dofs + joint)
@@ -161,6 +163,7 @@ class EnvGroup:
         self.physics_seconds += time.perf_counter() - start
         if steps:
             self._stale[:] = True
+            self._awake = False
             self._contacts.stepped()
         self.read()
 
@@ -292,11 +295,15 @@ class EnvGroup:
             self.bodies[row].add_force_torque(NO_PUSH, self.arrays.torque[row, :3])
 
     def write_targets(self) -> None:
-        """Drive targets, from `sent_target` and `sent_target_velocity`."""
-        _tell(self.arrays.sent_target, self._told_target, self._set_target)
-        moving, told = self.arrays.sent_target_velocity, self._told_target_velocity
-        if not np.array_equal(moving, told):
-            _tell(moving, told, self._set_target_velocity)
+        """Drive targets, from `sent_target` and `sent_target_velocity`.
+
+        Setting a target wakes an articulation. ManiSkill's own CPU path sets all of them each
+        step, so a robot that is told to stay must not fall asleep here either.
+        """
+        here = self.arrays
+        _tell(here.sent_target, self._told_target, self._set_target, wake=not self._awake)
+        _tell(here.sent_target_velocity, self._told_target_velocity, self._set_target_velocity)
+        self._awake = True
 
     def revive(self) -> None:
         """Take the state over that another process has come to, as far as the arrays know it."""
@@ -309,7 +316,8 @@ class EnvGroup:
         self.write_root_velocity(articulations)
         self.write_qpos(articulations)
         self.write_qvel(articulations)
-        self._told_target[:] = self._told_target_velocity[:] = np.nan
+        for told in (self._told_target, self._told_target_velocity):
+            told[self._exists] = np.nan
         self.write_targets()
 
     # Contacts ------------------------------------------------------------------------------------
@@ -355,14 +363,11 @@ def _state_of(body: Any) -> np.ndarray:
     return np.concatenate([pose.p, pose.q, body.linear_velocity, body.angular_velocity])
 
 
-def _tell(wanted: np.ndarray, told: np.ndarray, setters: list) -> None:
-    """Call the setter of every entry that changed, and of one entry in rows where none did.
-
-    Setting a target wakes an articulation. ManiSkill's own CPU path sets all of them each step,
-    so a robot that is told to stay must not fall asleep here either.
-    """
+def _tell(wanted: np.ndarray, told: np.ndarray, setters: list, wake: bool = False) -> None:
+    """Call the setter of every entry that changed and, to wake, one in rows where none did."""
     changed = wanted != told
-    changed[~changed.any(axis=1), :1] = True
+    if wake:
+        changed[~changed.any(axis=1), :1] = True
     which = np.flatnonzero(changed)
     values = wanted.ravel()[which].tolist()
     for entry, value in zip(which.tolist(), values):  # noqa: B905 (strict costs a tenth)

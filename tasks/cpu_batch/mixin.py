@@ -38,8 +38,8 @@ class CpuBatchMixin(Base):
     """Put before BaseEnv: `class MyEnv(CpuBatchMixin, BaseEnv)`.
 
     `num_envs > 1` then runs on the CPU when `sim_backend` says so, or is "auto" and there is no
-    CUDA device. With one environment or on CUDA nothing changes, except that bad actions are
-    refused before anything moves on every back end.
+    CUDA device; so does a single one under `sim_backend="physx_cpu_batched"`. Else nothing changes,
+    except that bad actions are refused before anything moves on every back end.
 
     The physics is shared among `scene_config.cpu_workers` processes of `sim_config` (0, the
     default: one per core where that pays). Results do not depend on their number.
@@ -63,7 +63,8 @@ class CpuBatchMixin(Base):
         if sim_backend == "auto":
             on_cpu = num_envs == 1 or not torch.cuda.is_available()
             sim_backend = "physx_cpu" if on_cpu else "physx_cuda"
-        self._cpu_batched = num_envs > 1 and sim_backend in CPU_SIM_BACKENDS
+        asked = sim_backend == BATCHED_BACKEND
+        self._cpu_batched = asked or (num_envs > 1 and sim_backend in CPU_SIM_BACKENDS)
         if self._cpu_batched:
             _check_version()
             if needs_cameras(obs_mode) or kwargs.get("parallel_in_single_scene"):
@@ -71,7 +72,7 @@ class CpuBatchMixin(Base):
                     f"obs_mode={obs_mode!r} with num_envs={num_envs} on the CPU: cameras exist for "
                     "num_envs=1 and on CUDA; use obs_mode='state' or 'state_dict' here"
                 )
-            render_backend = "none"
+            sim_backend, render_backend = "physx_cpu", "none"
         else:
             render_backend = choose_render_backend(render_backend, obs_mode)
         super().__init__(
