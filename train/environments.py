@@ -11,8 +11,9 @@ import numpy as np
 
 from maniskill_taskgrasp.errors import InputError, echo, unknown_name
 from maniskill_taskgrasp.train.policy import INTERFACE_FLAGS
-from maniskill_taskgrasp.train.ppo_config import PPOConfig
+from maniskill_taskgrasp.train.ppo_config import PPOConfig, is_task_grasp
 from maniskill_taskgrasp.train.rollout import VectorEnv
+from maniskill_taskgrasp.train.training_pairs import training_pairs
 
 TASK_FLAGS = (*INTERFACE_FLAGS, "topology", "objects", "presentation", "noise", "reward_mode")
 SEED_LIMIT = 2**31
@@ -52,7 +53,11 @@ def make_env(config: PPOConfig, num_envs: int, device: str, **kwargs: Any) -> gy
 
     import maniskill_taskgrasp  # noqa: F401  # Registers ours.
 
-    arguments = task_kwargs(config) | kwargs
+    arguments = task_kwargs(config)
+    if is_task_grasp(config.env_id) and config.objects is None:
+        objects, topologies = training_pairs(config.topology)
+        arguments |= {"objects": objects, "topology": topologies}
+    arguments |= kwargs
     arguments |= {"obs_mode": "state", "sim_backend": _sim_backend(config, device)}
     try:
         return gym.make(config.env_id, num_envs=num_envs, **arguments)
