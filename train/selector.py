@@ -112,6 +112,11 @@ def ship(config: SelectorConfig, table: GraspTable) -> None:
     print(f"trained on {len(table)} rows ({settings}); wrote {config.out}")
 
 
+def _rounded(results: dict[str, Any]) -> dict[str, Any]:
+    """Floats to five digits, so that the committed file stays small and diffs stay readable."""
+    return json.loads(json.dumps(results), parse_float=lambda text: round(float(text), 5))
+
+
 def main(config: SelectorConfig) -> None:
     torch.set_num_threads(config.threads)
     table = load_table(config.dataset).without_platform()
@@ -129,6 +134,7 @@ def main(config: SelectorConfig) -> None:
         with tqdm(total=len(SHARES) * FOLDS, unit="fit") as bar:
             results["learning"] = learning_curve(table, recipe, config.seed, bar.update)
     results["ceilings"] = ceilings(table)
+    results = _rounded(results)
     partial = path.with_suffix(".partial")
     partial.write_text(json.dumps(results, indent=1) + "\n", "utf-8")
     partial.replace(path)
