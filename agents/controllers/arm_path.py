@@ -34,7 +34,7 @@ class ArmPathController(JointPosController):
         self.step = torch.zeros(self.scene.num_envs, dtype=torch.long, device=self.device)
 
     def _initialize_action_space(self) -> None:
-        self.single_action_space = spaces.Box(np.empty(0), np.empty(0), dtype=np.float32)
+        self.single_action_space = spaces.Box(*np.empty((2, 0), np.float32), dtype=np.float32)
 
     def _hold_still(self, envs: Tensor) -> None:
         self.path[envs] = self.command[envs][:, None]
