@@ -11,6 +11,7 @@ import torch
 from mani_skill.agents.base_agent import BaseAgent, Keyframe
 from mani_skill.agents.registration import REGISTERED_AGENTS, register_agent
 from mani_skill.sensors.camera import CameraConfig
+from mani_skill.utils import sapien_utils
 from mani_skill.utils.structs import Actor
 from mani_skill.utils.structs.pose import Pose
 from torch import Tensor
@@ -33,6 +34,9 @@ REST_ARM = (-0.202, -0.78, -0.113, 1.75, -0.34, -1.0, 0.52)
 """[rad] palm down 0.75 m in front of the base and 0.25 m above it (fact sheet, section 1.5)."""
 NEUTRAL_ARM = (0.0, -1.18, 0.0, 2.18, 0.0, 0.57, 3.3161)
 """[rad] the manufacturer's neutral posture."""
+CAMERA_EYE = (0.0, 0.09, 0.015)  # [m] under the wrist, in hand_base
+CAMERA_TARGET = (-0.03, 0.11, 0.13)  # [m] in front of the fingers, to see what comes
+CAMERA_UP = (0.0, -1.0, 0.0)  # Out of the back of the hand: up in the picture, palm down.
 GRASP_FORCE = 0.5  # [N] least force of the thumb and of a finger that counts as grasping.
 
 if "sawyer_ar10" in REGISTERED_AGENTS:
@@ -109,18 +113,9 @@ class SawyerAR10(BaseAgent):
 
     @property
     def _sensor_configs(self) -> list[CameraConfig]:
-        return [
-            CameraConfig(
-                uid="hand_camera",
-                pose=sapien.Pose([0.0, 0.08, 0.0], [0.5, -0.5, -0.5, 0.5]),
-                width=128,
-                height=128,
-                fov=np.pi / 2,
-                near=0.01,
-                far=10.0,
-                mount=self.robot.links_map["hand_base"],
-            )
-        ]
+        view = sapien_utils.look_at(CAMERA_EYE, CAMERA_TARGET, up=CAMERA_UP)
+        wrist = self.robot.links_map["hand_base"]
+        return [CameraConfig("hand_camera", view, 128, 128, np.pi / 2, 0.01, 10.0, mount=wrist)]
 
     def _after_loading_articulation(self) -> None:
         """Reflected inertia of the hand's motors.
