@@ -29,7 +29,7 @@ Z = 1.96  # Two-sided 95 % quantile of the normal distribution.
 class ScoreConfig:
     """Score the language front end."""
 
-    split: Literal["dev", "test"] = "dev"
+    split: Literal["dev", "test", "fresh"] = "dev"
     """Part of the evaluation set."""
     matcher: Literal["own", "paper"] = "own"
     """Front end: ours, or the paper's recipe."""

@@ -21,6 +21,9 @@ NO_ACTION = "no action of the table"
 """The head's class for everything that is none of the 74 actions."""
 PHRASE_BONUS = 6.0  # Log-odds that the most specific matching phrase adds to its action.
 RANK_DISCOUNT = 1.5  # Taken off that bonus for the last phrase of an action's list.
+TOOL_BONUS = 4.0  # Times the share of an action in what people did with the instrument.
+GENERIC_ACTIONS = word_set("generic_actions")
+"""Actions done with anything, which an instrument says nothing about."""
 RESULT_SPECIFICITY = 3  # "Push it shut" says closing more surely than pushing.
 RESULTS = word_map("results")
 RESULTLESS = word_set("resultless")
@@ -105,6 +108,15 @@ def phrase_bonus(found: dict[str, tuple[int, float]]) -> dict[str, float]:
     }
 
 
+def _tool_bonus(clause: Clause, action: str) -> float:
+    """Log-odds for what people did with the named instrument: a vacuum says vacuuming."""
+    tool = clause.role("instrument")
+    if tool is None or tool.mention is None or action in GENERIC_ACTIONS:
+        return 0.0
+    done = load_knowledge().actions_of(tool.mention.objects[0][0])
+    return TOOL_BONUS * done.get(action, 0) / sum(done.values()) if done else 0.0
+
+
 @cache
 def _list_sizes() -> dict[str, int]:
     sizes: dict[str, int] = {}
@@ -142,6 +154,7 @@ def score_actions(clause: Clause, referents: frozenset[str] = frozenset()) -> Ac
         logits = np.zeros(len(classes))
     no_action = float(np.exp(logits[classes.index(NO_ACTION)]))
     logits = logits + np.array([bonus.get(name, 0.0) for name in classes])
+    logits = logits + np.array([_tool_bonus(clause, name) for name in classes])
     probabilities = np.exp(logits - np.logaddexp.reduce(logits))
     order = [i for i in np.argsort(-probabilities) if classes[i] != NO_ACTION]
     ranked = tuple((classes[i], float(probabilities[i])) for i in order)

@@ -115,6 +115,13 @@ def _start(token: Token, floor: int) -> int:
     return min([token.i, *lefts])
 
 
+def _is_listed(light: str, noun: str, base: str) -> bool:
+    """Whether the lexicon means something else by verb and noun: "take a reading" measures."""
+    phrases = load_lexicon().phrases
+    pair = {p.action for p in phrases.get(light, ()) if noun in p.nouns}
+    return bool(pair) and not pair & {p.action for p in phrases.get(base, ())}
+
+
 def _light_noun(doc: Doc, verb: int, high: int) -> int | None:
     """Token of the noun that carries the meaning of a light verb, None where it has its own.
 
@@ -125,7 +132,8 @@ def _light_noun(doc: Doc, verb: int, high: int) -> int | None:
     named = {i for m in doc._.mentions for i in range(m.start, m.end)}
     direct = verb + 1 < high and doc[verb + 1].lower_ in INDEFINITE
     giving = doc[verb].lemma_ in {"give", "do"} and not receiver and not direct
-    doing = doc[verb].lemma_ in {"do", "perform", "take", "make"}
+    light = doc[verb].lemma_
+    doing = light in {"do", "perform", "take", "make"}
     for at in range(verb + 1, high):
         token = doc[at]
         if token.dep_ == "prep" and token.lower_ not in {"of"}:
@@ -133,6 +141,8 @@ def _light_noun(doc: Doc, verb: int, high: int) -> int | None:
         base = base_of(token.lower_)
         if token.pos_ not in {"NOUN", "VERB"} or base is None or base in LIGHT_VERBS:
             continue
+        if _is_listed(light, token.lower_, base):
+            return None
         between = doc[verb + 1 : at]
         articles = [t.lower_ for t in between if t.pos_ in {"DET", "PRON"}]
         indefinite = bool(articles) and articles[-1] in INDEFINITE
@@ -210,12 +220,16 @@ def build_clauses(doc: Doc) -> tuple[Clause, ...]:
 def _share_roles(doc: Doc, clauses: list[Clause]) -> list[Clause]:
     """Give a clause what its neighbours say for it too.
 
-    "Wash and dry the plate" washes the plate; "polish it till it shines with the cloth" polishes
-    with the cloth.
+    "Check whether the battery works" checks the battery; "wash and dry the plate" washes the
+    plate; "polish it till it shines with the cloth" polishes with the cloth.
     """
     shared = list(clauses)
     for k in range(len(clauses) - 1):
         this, following = shared[k], clauses[k + 1]
+        between = [m for m in doc._.mentions if this.at < m.start < following.at]
+        if not this.roles and following.mood == "statement" and between:
+            told = Role("target", between[0].words, between[0].start, between[0])
+            this = shared[k] = replace(this, roles=(told,), text=f"{this.text} {told.text}")
         joined = this.at + 1 < len(doc) and doc[this.at + 1].lower_ in {"and", "or", ","}
         if not this.roles and joined:
             text = f"{this.text.rstrip(' ,')} {following.text.partition(' ')[2]}"

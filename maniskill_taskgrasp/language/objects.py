@@ -249,7 +249,9 @@ def choose_object(task: Task, action: str | None) -> Held:
     what was spoken of last.
     """
     held = _prepared(task, action)
-    if held is not None or action is None or task.told is None:
+    tool = task.told.clause.role("instrument") if task.told is not None else None
+    says_tool = task.transfer and tool is not None and tool.mention is not None
+    if action is None or task.told is None or (held is not None and not says_tool):
         return held or Held(None, 0.0)
     clause = task.told.clause
     held = (

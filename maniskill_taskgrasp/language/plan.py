@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, load_lexicon
+from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, load_lexicon, matches
 from maniskill_taskgrasp.language.roles import PLACE_WORDS, SOMETHING, Role, governor
 from maniskill_taskgrasp.language.words import word_set
 
@@ -21,6 +21,8 @@ PREPARING_VERBS = word_set("preparing_verbs")
 """Verbs that, before another request, only say what to do it with."""
 ABSTRACT = word_set("abstract")
 """Things that are asked for but not handed over: "I need help"."""
+GRIPPERS = word_set("grippers")
+"""Tools that hold another object in the hand's stead."""
 SEE_VERBS = word_set("see_verbs")
 """Verbs that point at something without a task for the hand: "see the hammer?"."""
 
@@ -135,7 +137,10 @@ def held_role(clause: Clause) -> Role | None:
     """What a transfer or "use" clause names; None for "something"."""
     if _names_something(clause):
         return None
-    role = clause.role("target") or clause.role("instrument")
+    target, tool = clause.role("target"), clause.role("instrument")
+    if tool is not None and tool.mention and tool.mention.objects[0][0] in GRIPPERS:
+        return tool  # "Grab the can with the tongs": the hand holds the tongs.
+    role = target or tool
     return role or (clause.role("place") if clause.transfer else None)
 
 
@@ -153,6 +158,14 @@ def _may_use_tool(clause: Clause) -> bool:
     """Whether the verb names something that people do with a tool."""
     phrases = load_lexicon().phrases.get(clause.verb, ())
     return any(p.action in TOOL_ACTIONS and not p.nouns for p in phrases)
+
+
+def _only_prepares(clause: Clause) -> bool:
+    """Whether the verb is one of `PREPARING_VERBS` and no phrase makes it more ("take off")."""
+    nouns = frozenset(clause.words)
+    phrases = load_lexicon().phrases.get(clause.verb, ())
+    more = any(p.specificity > 1 and matches(p, clause.words, nouns) for p in phrases)
+    return clause.verb in PREPARING_VERBS and not more
 
 
 def _belongs(told: Told, preparation: Told) -> bool:
@@ -173,22 +186,22 @@ def make_tasks(told: list[Told]) -> list[Task]:
     pending: Told | None = None
     for item in filter(_is_asked, told):
         clause = item.clause
-        if clause.transfer or clause.verb in PREPARING_VERBS:
+        if clause.transfer or _only_prepares(clause):
             if clause.transfer and tasks and _is_wish_without_tool(tasks[-1]):
                 anything = _names_something(clause)
                 tasks[-1] = Task(tasks[-1].told, held_role(clause), item, anything)
                 continue
-            tasks += _alone(pending)
+            tasks += alone(pending)
             pending = item
         elif pending is not None and _belongs(item, pending):
             anything = _names_something(pending.clause)
             tasks.append(Task(item, held_role(pending.clause), pending, anything))
             pending = None
         else:
-            tasks += _alone(pending)
+            tasks += alone(pending)
             tasks.append(Task(item))
             pending = None
-    return tasks + _alone(pending)
+    return tasks + alone(pending)
 
 
 def _is_wish_without_tool(task: Task) -> bool:
@@ -197,7 +210,7 @@ def _is_wish_without_tool(task: Task) -> bool:
     return task.told.clause.mood == "wish" or task.told.clause.purpose
 
 
-def _alone(told: Told | None) -> list[Task]:
+def alone(told: Told | None) -> list[Task]:
     """The task of a preparing clause that nothing followed."""
     if told is None:
         return []

@@ -126,10 +126,10 @@ def _inner_request(body: str) -> str | None:
     """An imperative inside a segment that does not start with one: "task three open the door"."""
     words = body.split()
     for at in range(1, len(words)):
-        told = words[at - 1] in TELLING_WORDS or any(
-            w in {"not", "n't", "never"} for w in words[:at]
-        )
-        if not told and words[at] in load_lexicon().verbs and _is_request_start(words, at):
+        told = words[at - 1] in TELLING_WORDS
+        denied = any(w in {"not", "never"} or w.endswith("n't") for w in words[:at])
+        starts = words[at] in load_lexicon().verbs and _is_request_start(words, at)
+        if starts and not told and not denied:
             return OPENER + " ".join(words[at:])
     return None
 

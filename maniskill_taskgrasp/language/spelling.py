@@ -96,7 +96,9 @@ def _cost(word: str, candidate: str, distance: int) -> float:
     swapped = sorted(word) == sorted(candidate)
     doubled = re.sub(r"(.)\1", r"\1", word) == re.sub(r"(.)\1", r"\1", candidate)
     likely = candidate in likely_words()
-    return distance - 0.5 * (swapped or doubled) - 0.4 * likely + 0.6 * (word[0] != candidate[0])
+    silent = candidate in {"w" + word, "k" + word}
+    other_first = word[0] != candidate[0] and not silent
+    return distance - 0.5 * (swapped or doubled) - 0.4 * likely + 0.6 * other_first
 
 
 def nearest_word(word: str) -> str | None:

@@ -17,7 +17,7 @@ from maniskill_taskgrasp.language.instruction import Instruction, Rejected
 from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, load_lexicon
 from maniskill_taskgrasp.language.model import load_model
 from maniskill_taskgrasp.language.objects import Held, antecedent, choose_object
-from maniskill_taskgrasp.language.plan import Task, contradiction, make_tasks, tell
+from maniskill_taskgrasp.language.plan import Task, alone, contradiction, make_tasks, tell
 from maniskill_taskgrasp.language.segments import frame, split_requests
 from maniskill_taskgrasp.language.spelling import correct, correct_verb
 from maniskill_taskgrasp.language.text import FILLERS, MAX_SEGMENTS, clean, split_sentences
@@ -193,8 +193,8 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
     if task.told is not None:
         scores = score_actions(task.told.clause, referents(task))
         if not is_meant(task.told.clause, scores):
-            if task.transfer and task.preparation is not None:
-                return answer(Task(None, task.held, task.preparation), text, object_override)
+            if task.preparation is not None:
+                return answer(alone(task.preparation)[0], text, object_override)
             reason = f"no action of the data fits {echo(task.told.clause.text)}: {TRY}"
             return Rejected(text, reason, "off_topic")
     action = scores.ranked[0][0] if scores is not None else None
