@@ -52,6 +52,8 @@ class Grasp(Output):
     """How far the object is from where the planner thinks: none, paper, hard or blind."""
     presentation: str = "auto"
     """How the object is offered: auto, table, stand, rail, rack or holder."""
+    search: int = 0
+    """Generations of a grasp search on this very object first; 0 uses the stored grasps alone."""
     video: Path | None = None
     """Write an mp4 of the first episode."""
 
@@ -67,6 +69,7 @@ class Grasp(Output):
             seed=self.seed,
             noise=self.noise,
             presentation=self.presentation,
+            search=self.search,
             video=self.video,
         )
         with _quiet():

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from maniskill_taskgrasp.knowledge import Affordance
     from maniskill_taskgrasp.language.instruction import Instruction
     from maniskill_taskgrasp.selection.strategy import GraspStrategy
+    from maniskill_taskgrasp.tasks.own_search import FoundGrasp
 
 TOP = 3  # Topologies that a report names.
 
@@ -77,6 +78,8 @@ class GraspResult:
     video: str | None
     seconds: float
     notes: list[str]
+    search: dict[str, Any] | None = None
+    """What a search on the object itself took and found; None where the stored grasps decided."""
 
     def to_json(self) -> dict[str, Any]:
         """JSON-able, with the keys of the command line's contract."""
@@ -99,12 +102,16 @@ class GraspOptions:
     presentation: str = "auto"
     video: Path | None = None
     """Where to write an mp4 of the first episode."""
+    search: int = 0
+    """Generations of a grasp search on the object before it is grasped."""
 
     def __post_init__(self) -> None:
         if self.episodes < 1:
             raise InputError(f"episodes must be at least 1, got {self.episodes}")
         if self.seed < 0:
             raise InputError(f"seed must be 0 or more, got {self.seed}")
+        if self.search < 0:
+            raise InputError(f"search must be 0 or more, got {self.search}")
         if self.topology is not None:
             resolve_topology(self.topology)
 
@@ -171,9 +178,12 @@ class Pipeline:
         from maniskill_taskgrasp.tasks.rollout import roll_out
 
         make_policy, env_kwargs = policy_maker(options.policy)
+        source = options.object or selection.object
+        found = _search(source, topology, options)
         rollout = roll_out(
-            options.object or selection.object,
+            source,
             topology,
+            grasp=found.grasp if found else None,
             make_policy=make_policy,
             episodes=options.episodes,
             seed=options.seed,
@@ -196,7 +206,8 @@ class Pipeline:
             fidelity=rollout.fidelity,
             video=rollout.video,
             seconds=round(time.perf_counter() - start, 2),
-            notes=selection.notes + rollout.notes,
+            notes=selection.notes + rollout.notes + ([found.note] if found else []),
+            search=found.summary() if found else None,
         )
 
 
@@ -229,6 +240,16 @@ def policy_maker(name: str) -> tuple[Callable[[Any], Any], dict[str, Any]]:
 
     path = _shipped_policy() if name == "learned" else Path(name)
     return partial(load_policy, path), policy_env_kwargs(path)
+
+
+def _search(source: str, topology: Topology, options: GraspOptions) -> FoundGrasp | None:
+    """The grasp found on the object itself, where a search is asked for."""
+    if not options.search:
+        return None
+    from maniskill_taskgrasp.tasks.own_search import SearchBudget, find_grasp
+
+    budget = SearchBudget(generations=options.search, seed=options.seed)
+    return find_grasp(source, topology, options.presentation, budget)
 
 
 def _shipped_policy() -> Path:

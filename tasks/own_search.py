@@ -75,6 +75,15 @@ class FoundGrasp:
     cached: bool = False
     """Whether an earlier run had searched already."""
 
+    @property
+    def note(self) -> str:
+        """One line for a person."""
+        when = "by an earlier run" if self.cached else "now"
+        return (
+            f"the grasp was searched on this very object ({self.spent} simulated trials, {when}), "
+            f"from {self.start!r}"
+        )
+
     def summary(self) -> dict[str, Any]:
         """What a result says about the search."""
         return {
@@ -96,8 +105,8 @@ def find_grasp(obj: str, topology: Topology, presentation: str, budget: SearchBu
     path = _cache_path(library.load(obj), topology, presentation, budget)
     if path.is_file():
         data = json.loads(path.read_text("utf-8"))
-        fields = data.pop("grasp").items()
-        frozen = {name: tuple(v) if isinstance(v, list) else v for name, v in fields}
+        fields: dict[str, Any] = data.pop("grasp")
+        frozen = {name: tuple(v) if isinstance(v, list) else v for name, v in fields.items()}
         return FoundGrasp(Grasp(**frozen), **data, cached=True)
     found = search(obj, topology, presentation, budget)
     data = asdict(found)

@@ -13,6 +13,7 @@ from torch import Tensor
 
 from maniskill_taskgrasp.episode import CONTROL_FREQ
 from maniskill_taskgrasp.tasks.closing import ConstantClosing
+from maniskill_taskgrasp.tasks.grasp_library import Grasp
 from maniskill_taskgrasp.tasks.outcome import FAILURES
 from maniskill_taskgrasp.tasks.rendering import rendering_available
 from maniskill_taskgrasp.topology import Topology
@@ -35,6 +36,7 @@ def roll_out(
     topology: Topology,
     *,
     make_policy: Callable[[Any], Callable[[Tensor], Tensor]] = ConstantClosing,
+    grasp: Grasp | None = None,
     episodes: int = 1,
     seed: int = 0,
     noise: str = "paper",
@@ -48,6 +50,7 @@ def roll_out(
         obj: library name or mesh file.
         topology: how to grasp it.
         make_policy: environment -> (observation -> action).
+        grasp: palm pose and postures to use in place of the planner's.
         video: mp4 to write of the first episode.
         env_kwargs: further arguments of the environment, such as the policy's control mode.
 
@@ -55,6 +58,7 @@ def roll_out(
         InputError: unknown object, noise or presentation.
     """
     notes = []
+    options = {"reconfigure": True} | ({} if grasp is None else reset_options([grasp]))
     if video is not None and not rendering_available():
         notes.append("no video: no Vulkan device was found (see README, Rendering)")
         video = None
@@ -73,7 +77,7 @@ def roll_out(
         lifts, failures, forms = [], [], []
         for episode in range(episodes):
             film = video if episode == 0 else None
-            lift, failure, form = _episode(env, policy, seed + episode, film)
+            lift, failure, form = _episode(env, policy, seed + episode, options, film)
             lifts.append(lift)
             failures.append(failure)
             forms.append(form)
@@ -89,12 +93,25 @@ def roll_out(
     )
 
 
+def reset_options(grasps: Sequence[Grasp]) -> dict[str, Any]:
+    """What the environment's reset takes for given grasps, one for each environment."""
+    rows = {
+        name: torch.tensor([getattr(grasp, name) for grasp in grasps])
+        for name in ("pregrasp", "preshape", "closing")
+    }
+    return {"pregrasp": rows["pregrasp"], "postures": (rows["preshape"], rows["closing"])}
+
+
 def _episode(
-    env: Any, policy: Callable[[Tensor], Tensor], seed: int, video: Path | None
+    env: Any,
+    policy: Callable[[Tensor], Tensor],
+    seed: int,
+    options: dict[str, Any],
+    video: Path | None,
 ) -> tuple[float, str, bool]:
     """One episode to its end, and on camera to the end of the clock."""
     frames: list[Any] = []
-    obs, info = env.reset(seed=seed, options={"reconfigure": True})
+    obs, info = env.reset(seed=seed, options=options)
     over = False
     while not over:
         obs, _, terminated, truncated, info = env.step(policy(obs))

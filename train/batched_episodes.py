@@ -19,6 +19,7 @@ from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.episode import HELD_STEPS, MAX_EPISODE_STEPS
 from maniskill_taskgrasp.tasks.grasp_library import Grasp
 from maniskill_taskgrasp.tasks.noise import resolve_noise
+from maniskill_taskgrasp.tasks.rollout import reset_options
 from maniskill_taskgrasp.topology import Topology
 
 Array = NDArray[Any]
@@ -152,14 +153,8 @@ def run_jobs(jobs: Sequence[Job], conditions: Conditions) -> list[Episodes]:
 
 def _grasp_options(jobs: Sequence[Job]) -> dict[str, Any]:
     grasps = [job.grasp for job in jobs if job.grasp is not None]
-    if not grasps:
-        return {}
-    assert len(grasps) == len(jobs)
-    shapes = [[g.preshape for g in grasps], [g.closing for g in grasps]]
-    return {
-        "pregrasp": torch.tensor([grasp.pregrasp for grasp in grasps]),
-        "postures": tuple(torch.tensor(rows) for rows in shapes),
-    }
+    assert len(grasps) in (0, len(jobs))
+    return reset_options(grasps) if grasps else {}
 
 
 @torch.no_grad()

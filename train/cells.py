@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from maniskill_taskgrasp.tasks.outcome import FAILURES
+from maniskill_taskgrasp.topology import TOPOLOGY_NAMES
 from maniskill_taskgrasp.train.batched_episodes import Episodes
 from maniskill_taskgrasp.train.intervals import wilson_interval
 from maniskill_taskgrasp.train.offers import Offer
@@ -78,8 +79,9 @@ def overall(cells: list[Json]) -> Json:
 
 
 def by_topology(cells: list[Json]) -> list[Json]:
-    """One row for each topology that was tried, in the order of its first cell."""
-    names = dict.fromkeys(cell["topology"] for cell in cells if cell["episodes"])
+    """One row for each topology that was tried, in the data set's order."""
+    tried = {cell["topology"] for cell in cells if cell["episodes"]}
+    names = [name for name in TOPOLOGY_NAMES if name in tried]
     groups = {name: [cell for cell in cells if cell["topology"] == name] for name in names}
     return [{"topology": name, "pairs": len(g), **_sum(g)} for name, g in groups.items()]
 

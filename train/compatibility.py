@@ -42,7 +42,7 @@ RULE = (
     f"Where that leaves a topology fewer than {PER_TOPOLOGY} objects, others that fit its reach "
     f"and payload fill it up. Table I: the {PER_TOPOLOGY} fitting objects with most rows for the "
     "topology; ties go to objects that no earlier topology of the table uses, then to those with "
-    "most rows in all, then by name. Presentation: by the rule of assets/objects/presentation.py."
+    "most rows in all, then by name. Presentation: by rule from object and topology (tasks/placement.py, suited)."
 )
 
 
@@ -102,7 +102,7 @@ def compatible_pairs(objects: Sequence[Affordance], knowledge: Knowledge) -> Pai
         if topology in PAPER_TOPOLOGIES:
             lists.paper.extend(ranked[:PER_TOPOLOGY])
         seen_pairs = [pair for pair in ranked if pair.rows]
-        lists.feasible.extend(seen_pairs or [])
+        lists.feasible.extend(seen_pairs)
         lists.feasible.extend(ranked[len(seen_pairs) : PER_TOPOLOGY])
     return lists
 
@@ -139,11 +139,6 @@ def committed_pairs(table: str) -> list[Pair]:
     """The committed list of a table, "paper" or "feasible"."""
     text = files("maniskill_taskgrasp.assets").joinpath(PAIRS_FILE).read_text("utf-8")
     return [Pair(**row) for row in json.loads(text)[table]]
-
-
-def pairs_of(topology: Topology, table: str) -> list[str]:
-    """Objects that a committed table holds in a topology."""
-    return [pair.object for pair in committed_pairs(table) if pair.topology == topology.name]
 
 
 def main() -> None:

@@ -10,6 +10,8 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D
 
 DPI = 110
+TILES = 8  # Most tiles on a line of the heat map.
 # Okabe and Ito's palette: told apart by colour-blind readers too.
 COLOURS = dict(
     zip(PARTS, ("#555555", "#0072B2", "#009E73", "#E69F00", "#CC79A7", "#D55E00"), strict=True)
@@ -61,30 +64,29 @@ def heat_map(rows: Sequence[tuple[str, list[Json]]]) -> Figure:
     Args:
         rows: topology and its measured cells.
     """
-    wide = max(len(cells) for _, cells in rows)
-    figure = Figure(figsize=(2.4 + 1.55 * wide, 0.6 + 0.75 * len(rows)), layout="constrained")
+    lines = [
+        (topology if first == 0 else "", cells[first : first + TILES])
+        for topology, cells in rows
+        for first in range(0, len(cells), TILES)
+    ]
+    wide = max(len(cells) for _, cells in lines)
+    figure = Figure(figsize=(2.4 + 1.55 * wide, 0.6 + 0.75 * len(lines)), layout="constrained")
     axes = figure.add_subplot()
-    for y, (topology, cells) in enumerate(rows):
+    for y, (topology, cells) in enumerate(lines):
         axes.text(-0.1, y, topology, ha="right", va="center", fontsize=9)
         for x, cell in enumerate(cells):
             back, ink = heat_colour(cell["both_rate"])
-            axes.add_patch(_tile(x, y, back))
+            axes.add_patch(Rectangle((x + 0.02, y - 0.47), 0.96, 0.94, color=back))
             low, high = cell["both_ci95"]
             text = (
                 f"{_short(cell['object'])}\n{100 * cell['both_rate']:.0f} % "
                 f"[{100 * low:.0f}-{100 * high:.0f}]\nlift {100 * cell['rate']:.0f} %"
             )
             axes.text(x + 0.5, y, text, ha="center", va="center", fontsize=7, color=ink)
-    axes.set(xlim=(-2.0, wide), ylim=(len(rows) - 0.5, -0.5))
+    axes.set(xlim=(-2.0, wide), ylim=(len(lines) - 0.5, -0.5))
     axes.axis("off")
     axes.set_title("Lifted in the named topology, with Wilson 95 % intervals", fontsize=10)
     return figure
-
-
-def _tile(x: float, y: float, colour: str) -> Any:
-    from matplotlib.patches import Rectangle
-
-    return Rectangle((x + 0.02, y - 0.47), 0.96, 0.94, color=colour)
 
 
 def _short(name: str) -> str:
@@ -106,7 +108,7 @@ def failure_bars(rows: Sequence[Json]) -> Figure:
     for name, colour in zip(classes, colours, strict=True):
         share = np.array([_share(row, name) for row in rows])
         if share.any():
-            label = name if name != "in form" else "lifted in form"
+            label = "lifted in form" if name == "in form" else name.replace("_", " ")
             axes.barh(range(len(rows)), share, left=left, color=colour, label=label)
         left += share
     axes.set_yticks(range(len(rows)), [row["topology"] for row in rows], fontsize=9)
@@ -129,6 +131,8 @@ def example(trace: Trace, model: ObjectModel, title: str) -> Figure:
     space: Axes3D = figure.add_subplot(1, 2, 1, projection="3d")  # type: ignore[assignment]
     _fingertips(space, trace, model)
     _forces(figure.add_subplot(1, 2, 2), trace)
+    lines = [Line2D([], [], color=COLOURS[part], lw=2, label=part) for part in PARTS]
+    figure.legend(handles=lines, loc="outside lower center", ncols=6, fontsize=8, frameon=False)
     return figure
 
 
@@ -138,16 +142,16 @@ def _fingertips(axes: Axes3D, trace: Trace, model: ObjectModel) -> None:
     reach = 0.0
     for digit, name in enumerate(DIGITS):
         path = 1000 * trace.tips[CLOSE_START:LIFT_START, digit]
-        axes.plot(*path.T, color=COLOURS[name], lw=2, label=name)
+        axes.plot(*path.T, color=COLOURS[name], lw=2)
         axes.scatter(*path[-1], color=COLOURS[name], s=22)
         reach = max(reach, float(np.abs(path - centre).max()))
     for axis, middle in zip("xyz", centre, strict=True):
         axes.set(**{f"{axis}lim": (middle - reach, middle + reach)})
     axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
     axes.tick_params(labelsize=6)
+    axes.locator_params(nbins=4)
     axes.set_box_aspect((1, 1, 1))
     axes.view_init(elev=18, azim=35)
-    axes.legend(fontsize=7, loc="upper left", frameon=False)
 
 
 def _draw_object(axes: Axes3D, model: ObjectModel, pose: NDArray[Any]) -> NDArray[np.float64]:
@@ -179,9 +183,7 @@ def _forces(axes: Any, trace: Trace) -> None:
         start = stop
     for part, force in zip(PARTS, trace.forces.T, strict=True):
         if force.max() > 0:
-            axes.plot(seconds, force, color=COLOURS[part], label=part, lw=1.4)
+            axes.plot(seconds, force, color=COLOURS[part], lw=1.4)
     axes.set(xlabel="time [s]", ylabel="contact force [N]", xlim=(0, seconds[-1]))
     axes.set_ylim(bottom=0)
     axes.spines[["top", "right"]].set_visible(False)
-    if axes.lines:
-        axes.legend(fontsize=7, frameon=False, loc="upper left")

@@ -182,7 +182,8 @@ def _presented(offer: Offer, presentation: str) -> Offer:
     if not offer.offered:
         return offer
     try:
-        placement = place(library.load(offer.source), presentation)
+        model = library.load(offer.source)
+        placement = place(model, presentation, topology=offer.topology)
     except InputError as error:
         return replace(offer, offered=False, reason=str(error))
     return replace(offer, presentation=placement.presentation.kind)

@@ -17,8 +17,8 @@ from maniskill_taskgrasp.train.cells import Json
 
 SHOWN_STEPS = (LIFT_START, (LIFT_START + PHASE_ENDS[-2]) // 2, MAX_EPISODE_STEPS)
 """Closed, half-way up, and the end."""
-SHRINK = 2  # The camera's pixels for one of a thumbnail, each way.
-FORMAT = "PNG"
+CROP = (0.1, 0.9), (0.2, 0.8)  # Rows and columns of the camera's picture around the hand.
+HEIGHT = 280  # [pixel]
 
 
 def photograph(cell: Json, config: Json, seed: int) -> tuple[bytes, str]:
@@ -77,9 +77,13 @@ def _grasp_options(cell: Json) -> dict[str, Any]:
 def _strip(frames: list[NDArray[np.uint8]]) -> bytes:
     from PIL import Image
 
-    joined = np.concatenate(frames, axis=1)
-    height, width, _ = joined.shape
-    picture = Image.fromarray(joined).resize((width // SHRINK, height // SHRINK))
+    height, width, _ = frames[0].shape
+    (top, bottom), (left, right) = CROP
+    rows = slice(round(top * height), round(bottom * height))
+    columns = slice(round(left * width), round(right * width))
+    joined = np.concatenate([frame[rows, columns] for frame in frames], axis=1)
+    scale = HEIGHT / joined.shape[0]
+    picture = Image.fromarray(joined).resize((round(scale * joined.shape[1]), HEIGHT))
     buffer = io.BytesIO()
-    picture.save(buffer, FORMAT, optimize=True)
+    picture.save(buffer, "PNG", optimize=True)
     return buffer.getvalue()

@@ -1,0 +1,117 @@
+"""Laws of the search on the very object: its budget, its cache, and what it may choose."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from maniskill_taskgrasp.assets.objects import library
+from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.tasks import own_search
+from maniskill_taskgrasp.tasks.grasp_library import Grasp
+from maniskill_taskgrasp.tasks.own_search import FoundGrasp, SearchBudget, find_grasp
+from maniskill_taskgrasp.tasks.pose_search import PREGRASP_LOWER, PREGRASP_UPPER
+from maniskill_taskgrasp.topology import resolve_topology
+
+PAD = resolve_topology("Precision pad abd 2-3")
+PALM = resolve_topology("Power palm abd 2-5")
+BUDGET = SearchBudget(generations=3)
+FOUND = FoundGrasp(
+    Grasp(
+        topology=PAD.slug,
+        obj="phone",
+        presentation="table",
+        extents=(0.1, 0.2, 0.3),
+        height=0.05,
+        pregrasp=(0.0,) * 6,
+        preshape=(0.5,) * 10,
+        closing=(1.0,) * 10,
+        lift=1.0,
+        both=0.9,
+        trials=32,
+    ),
+    start="rule",
+    spent=320,
+)
+
+
+@pytest.fixture
+def searches(monkeypatch, tmp_path):
+    """An empty cache, and a search that only notes that it was asked."""
+    asked = []
+    monkeypatch.setattr(own_search, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(own_search, "search", lambda *args: asked.append(args) or FOUND)
+    return asked
+
+
+def test_the_same_search_is_made_once(searches):
+    first = find_grasp("phone", PAD, "auto", BUDGET)
+    second = find_grasp("phone", PAD, "auto", BUDGET)
+    assert len(searches) == 1
+    assert (first.cached, second.cached) == (False, True)
+    assert second.grasp == first.grasp == FOUND.grasp
+    assert second.spent == 320
+
+
+@pytest.mark.parametrize(
+    ("obj", "topology", "presentation", "budget"),
+    [
+        ("screwdriver", PAD, "auto", BUDGET),
+        ("phone", PALM, "auto", BUDGET),
+        ("phone", PAD, "table", BUDGET),
+        ("phone", PAD, "auto", replace(BUDGET, generations=4)),
+        ("phone", PAD, "auto", replace(BUDGET, seed=1)),
+        ("phone", PAD, "auto", replace(BUDGET, noise="hard")),
+    ],
+)
+def test_another_search_is_made_anew(searches, obj, topology, presentation, budget):
+    find_grasp("phone", PAD, "auto", BUDGET)
+    find_grasp(obj, topology, presentation, budget)
+    assert len(searches) == 2
+
+
+@pytest.mark.parametrize("change", [{"mass_kg": 0.2}, {"friction": 0.1}])
+def test_a_changed_object_is_searched_anew(searches, monkeypatch, change):
+    """The name is the same; what it weighs or is made of is not."""
+    find_grasp("phone", PAD, "auto", BUDGET)
+    other = replace(library.load("phone"), **change)
+    monkeypatch.setattr(own_search.library, "load", lambda name: other)
+    find_grasp("phone", PAD, "auto", BUDGET)
+    assert len(searches) == 2
+
+
+def test_changed_code_makes_old_grasps_void(searches, monkeypatch):
+    find_grasp("phone", PAD, "auto", BUDGET)
+    monkeypatch.setattr(own_search, "code_fingerprint", lambda: "other")
+    find_grasp("phone", PAD, "auto", BUDGET)
+    assert len(searches) == 2
+
+
+def test_a_search_without_generations_is_refused():
+    with pytest.raises(InputError, match="at least 1 generation, got 0"):
+        SearchBudget(generations=0)
+
+
+def test_results_say_that_the_object_itself_was_searched():
+    assert "searched on this very object (320 simulated trials, now)" in FOUND.note
+    assert FOUND.summary()["trials"] == 320
+
+
+def test_a_search_spends_its_budget_and_stays_in_bounds(monkeypatch):
+    """In the simulator, small: every trial is counted, the grasp lies in the searched box."""
+    spent = []
+    trials = own_search.GraspTrials
+
+    class Counting(trials):
+        def run(self, pregrasp, *args, **kwargs):
+            spent.append(len(pregrasp))
+            return super().run(pregrasp, *args, **kwargs)
+
+    monkeypatch.setattr(own_search, "GraspTrials", Counting)
+    budget = SearchBudget(generations=1, num_envs=8)
+    found = own_search.search("screwdriver", PAD, "auto", budget)
+    assert sum(spent) == budget.trials == found.spent == 24
+    pregrasp = np.array(found.grasp.pregrasp)
+    assert (pregrasp >= PREGRASP_LOWER).all()
+    assert (pregrasp <= PREGRASP_UPPER).all()
+    assert found.grasp.trials == 4
