@@ -45,6 +45,20 @@ class Node:
     """(4, 4)"""
 
 
+@dataclass(frozen=True)
+class _Chain:
+    """Moving joints from the root to a link."""
+
+    columns: Tensor
+    """(k,) long places in a posture."""
+    kinds: Tensor
+    """(k,) long"""
+    fixed: Tensor
+    """(k, 4, 4) from one joint's motion to the next joint."""
+    end: Tensor
+    """(4, 4) from the last motion to the link."""
+
+
 class ArticulationKinematics:
     """Link poses and Jacobians of one kinematic tree for a batch of postures.
 
@@ -74,7 +88,7 @@ class ArticulationKinematics:
         self._before = self._tensor([node.before for node in nodes])
         self._after = self._tensor([node.after for node in nodes])
         self._levels = self._by_depth()
-        self._chains: dict[str, tuple[Tensor, ...]] = {}
+        self._chains: dict[str, _Chain] = {}
 
     @classmethod
     def of(cls, robot: Articulation) -> ArticulationKinematics:
@@ -127,7 +141,7 @@ class ArticulationKinematics:
         """Place of a joint in a posture."""
         return self._column[joint]
 
-    def _tensor(self, rows: Sequence[Any]) -> Tensor:
+    def _tensor(self, rows: Any) -> Tensor:
         values = np.asarray(rows)
         dtype = torch.float32 if values.dtype.kind == "f" else torch.long
         return torch.tensor(values, dtype=dtype, device=self.device)
@@ -168,31 +182,50 @@ class ArticulationKinematics:
         return self.pose_and_jacobian(qpos, link)[1]
 
     def pose_and_jacobian(self, qpos: Tensor, link: str) -> tuple[Tensor, Tensor]:
-        """`link_matrices` of that link, (n, 4, 4), and its `jacobian`, in one pass."""
-        world = self.link_matrices(qpos)
-        pose = world[:, self.link_index(link)]
-        members, parents, columns = self._chain(link)
-        frame = world[:, parents] @ self._before.to(qpos.dtype)[members]
+        """`link_matrices` of that link, (n, 4, 4), and its `jacobian`, from its own chain alone."""
+        chain = self._chain(link)
+        fixed, end = chain.fixed.to(qpos.dtype), chain.end.to(qpos.dtype)
+        motion = _motion(qpos[:, chain.columns], chain.kinds)
+        pose = torch.eye(4, dtype=qpos.dtype, device=self.device).expand(len(qpos), 4, 4)
+        frames = []
+        for i in range(len(fixed)):
+            frames.append(pose @ fixed[i])
+            pose = frames[-1] @ motion[:, i]
+        pose = pose @ end
+        frame = torch.stack(frames, 1)
         axis, origin = frame[..., :3, 0], frame[..., :3, 3]
-        turns = (self._kind[members] == REVOLUTE)[:, None]
+        turns = (chain.kinds == REVOLUTE)[:, None]
         lever = torch.linalg.cross(axis, pose[:, None, :3, 3] - origin)
         jacobian = qpos.new_zeros(len(qpos), 6, self.dof)
-        jacobian[:, :3, columns] = torch.where(turns, lever, axis).transpose(1, 2)
-        jacobian[:, 3:, columns] = (axis * turns).transpose(1, 2)
+        jacobian[:, :3, chain.columns] = torch.where(turns, lever, axis).transpose(1, 2)
+        jacobian[:, 3:, chain.columns] = (axis * turns).transpose(1, 2)
         return pose, jacobian
 
-    def _chain(self, link: str) -> tuple[Tensor, ...]:
-        """Links with a moving joint from that link to the root, their parents and columns."""
+    def _chain(self, link: str) -> _Chain:
         if link not in self._chains:
-            members, i = [], self.link_index(link)
-            while i >= 0:
-                if self._nodes[i].column >= 0:
-                    members.append(i)
-                i = self._nodes[i].parent
-            parents = [self._nodes[i].parent for i in members]
-            columns = [self._nodes[i].column for i in members]
-            self._chains[link] = tuple(map(self._tensor, (members, parents, columns)))
+            fixed, since = [], np.eye(4)
+            moving: list[Node] = []
+            for node in self._from_root(link):
+                since = since @ node.before
+                if node.column >= 0:
+                    fixed.append(since)
+                    moving.append(node)
+                    since = np.eye(4)
+                since = since @ node.after
+            self._chains[link] = _Chain(
+                columns=self._tensor([node.column for node in moving]),
+                kinds=self._tensor([node.kind for node in moving]),
+                fixed=self._tensor(fixed),
+                end=self._tensor(since),
+            )
         return self._chains[link]
+
+    def _from_root(self, link: str) -> list[Node]:
+        path, i = [], self.link_index(link)
+        while i >= 0:
+            path.append(self._nodes[i])
+            i = self._nodes[i].parent
+        return path[::-1]
 
 
 def _x_to(axis: NDArray[np.float64]) -> NDArray[np.float64]:
