@@ -21,6 +21,14 @@ if TYPE_CHECKING:
     import sapien
     import trimesh
 
+PALETTE = (
+    (214, 83, 73, 255),
+    (66, 133, 190, 255),
+    (98, 168, 84, 255),
+    (233, 170, 60, 255),
+    (146, 104, 178, 255),
+    (92, 184, 186, 255),
+)
 CREASE = np.radians(32.0)  # Steeper edges of the drawn mesh are shown as edges.
 FIXTURE_COLOUR = (0.55, 0.45, 0.33, 1.0)
 
@@ -90,6 +98,23 @@ def _convex_file(part: Part) -> Path:
 def _visual_file(model: ObjectModel) -> Path:
     """GLB of the object's mesh, one material a colour: SAPIEN shows materials, not face colours."""
     return _cached(_coloured_glb(model.visual()), ".glb")
+
+
+def parts_file(model: ObjectModel) -> Path:
+    """GLB of the object's convex parts, each in its own colour."""
+    import trimesh
+
+    pieces = []
+    for index, part in enumerate(model.parts):
+        triangles = part_triangles(part)
+        hull = trimesh.Trimesh(triangles.reshape(-1, 3)).convex_hull
+        colour = np.array(PALETTE[index % len(PALETTE)], dtype=np.uint8)
+        hull.visual = trimesh.visual.ColorVisuals(
+            hull, face_colors=np.tile(colour, (len(hull.faces), 1))
+        )
+        pieces.append(hull)
+    joined: Any = trimesh.util.concatenate(pieces)
+    return _cached(_coloured_glb(joined), ".glb")
 
 
 def _coloured_glb(mesh: trimesh.Trimesh) -> bytes:

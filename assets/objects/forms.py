@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
+from maniskill_taskgrasp.assets.objects.geometry import MAX_GROWTH, few_corners
 from maniskill_taskgrasp.assets.objects.lathe import lathe_mesh
 from maniskill_taskgrasp.assets.objects.model import Part
 from maniskill_taskgrasp.assets.objects.pieces import (
@@ -18,8 +18,6 @@ from maniskill_taskgrasp.assets.objects.pieces import (
 )
 
 SKIN = 0.00012  # [m] by which a drawn label stands out of the surface below it.
-
-MAX_GROWTH = 1.03  # By which a part of few corners may outgrow the shape it stands for.
 
 STEEL, DARK_STEEL, BRASS = "#b8bcc4", "#6d737b", "#c9a24a"
 BLACK, GREY, WHITE = "#26282c", "#8b8f96", "#f2f1ec"
@@ -98,23 +96,9 @@ def _spread(value: float, power: float) -> float:
 
 
 def _few(piece: Piece) -> Piece:
-    """The piece with a collision part of at most 64 corners, the GPU's limit, and its volume."""
-    corners = piece.vertices
-    middle, size = (corners.min(0) + corners.max(0)) / 2, np.ptp(corners, axis=0)
-    # Corners farthest in directions spread over the box-shaped, not the true, object: flat ones
-    # keep their rims.
-    reach = (corners - middle) / size @ _sphere(64).T
-    chosen = corners[np.unique(np.argmax(reach, axis=0))]
-    grow = min((ConvexHull(corners).volume / ConvexHull(chosen).volume) ** (1 / 3), MAX_GROWTH)
-    part = Part("convex", vertices=middle + (chosen - middle) * grow)
+    """The piece with a collision part of few corners."""
+    part = Part("convex", vertices=few_corners(piece.vertices))
     return Piece(piece.vertices, piece.faces, piece.colour, (part,))
-
-
-def _sphere(count: int) -> np.ndarray:
-    i = np.arange(count) + 0.5
-    polar, turn = np.arccos(1 - 2 * i / count), np.pi * (1 + 5**0.5) * i
-    sine = np.sin(polar)
-    return np.stack([np.cos(turn) * sine, np.sin(turn) * sine, np.cos(polar)], axis=1)
 
 
 def open_box(x: float, y: float, z: float, wall: float, colour: str) -> list[Piece]:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 CIRCLE_CORNERS = 32  # Corners that stand for a circle when a round part is turned into points.
+MAX_CORNERS = 64  # Of a convex part: the GPU back end's limit.
+MAX_GROWTH = 1.03  # By which a part of few corners may outgrow the shape it stands for.
 CANDIDATES_PER_POINT = 24  # Surface samples that each evenly spread point is chosen from.
 
 
@@ -188,3 +190,28 @@ def _farthest(points: Array, n: int) -> Array:
         chosen.append(int(np.argmax(distance)))
         distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
     return points[chosen]
+
+
+def few_corners(points: Array, count: int = MAX_CORNERS) -> Array:
+    """(m <= count, 3) [m] corners whose convex hull has nearly the shape and volume of the points'.
+
+    Args:
+        points: (n, 3) [m] not all in one plane.
+    """
+    from scipy.spatial import ConvexHull
+
+    hull = ConvexHull(points)
+    corners = points[hull.vertices]
+    if len(corners) <= count:
+        return corners
+    middle, size = (corners.min(0) + corners.max(0)) / 2, np.ptp(corners, axis=0)
+    i = np.arange(count) + 0.5
+    polar, turn = np.arccos(1 - 2 * i / count), np.pi * (1 + 5**0.5) * i
+    sine = np.sin(polar)
+    directions = np.stack([np.cos(turn) * sine, np.sin(turn) * sine, np.cos(polar)])
+    # Corners farthest in directions spread over the shape stretched to a cube: flat things keep
+    # their rims.
+    chosen = corners[np.unique(np.argmax((corners - middle) / size @ directions, axis=0))]
+    grow = min((hull.volume / ConvexHull(chosen).volume) ** (1 / 3), MAX_GROWTH)
+    kept: Array = middle + (chosen - middle) * grow
+    return kept

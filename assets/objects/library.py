@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 from functools import cache, partial
 from importlib.resources import files
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from maniskill_taskgrasp.assets.objects.meshfile import SUFFIXES
 from maniskill_taskgrasp.assets.objects.model import ObjectModel
 from maniskill_taskgrasp.assets.objects.recipe import FRICTION
 from maniskill_taskgrasp.assets.objects.store import Json, part_from_json, pose_from_json
+from maniskill_taskgrasp.assets.objects.userlib import cached_import, load_user_object, user_names
 from maniskill_taskgrasp.errors import unknown_name
 from maniskill_taskgrasp.knowledge import load_knowledge
 
@@ -36,26 +39,43 @@ def _split() -> dict[str, str]:
 
 
 def names(split: str | None = None) -> tuple[str, ...]:
-    """Sorted names of the catalogue's objects, of one split if it is given.
+    """Sorted names of objects.
+
+    Args:
+        split: "train" or "test"; None or "all" for both; "imported" for the user's own.
 
     Raises:
         InputError: no split has that name.
     """
-    if split not in (None, "all", *SPLITS):
-        raise unknown_name("split", split, ("all", *SPLITS), "train, test and all")
-    known = sorted(_catalogue())
-    return tuple(n for n in known if split in (None, "all") or _split()[n] == split)
+    known = ("all", *SPLITS, "imported")
+    if split not in (None, *known):
+        raise unknown_name("split", split, known, "train, test, all and imported")
+    if split == "imported":
+        return user_names()
+    return tuple(n for n in sorted(_catalogue()) if split in (None, "all") or _split()[n] == split)
+
+
+def load(name: str) -> ObjectModel:
+    """The object of that name, or of the mesh file at that path.
+
+    A catalogue name comes first, then the user's own objects, then files; a file is imported on
+    the fly and kept in the cache.
+
+    Raises:
+        InputError: there is no such object or file, or the file does not do.
+    """
+    if name in _catalogue():
+        return _load_catalogue(name)
+    if name in user_names():
+        return load_user_object(name)
+    path = Path(name).expanduser()
+    if path.suffix.lower() in SUFFIXES or len(path.parts) > 1:
+        return cached_import(path)
+    raise unknown_name("object", name, (*_catalogue(), *user_names()), "taskgrasp objects list")
 
 
 @cache
-def load(name: str) -> ObjectModel:
-    """The object of that name.
-
-    Raises:
-        InputError: no object has that name.
-    """
-    if name not in _catalogue():
-        raise unknown_name("object", name, _catalogue(), "taskgrasp objects list")
+def _load_catalogue(name: str) -> ObjectModel:
     return model_from_json(name, _catalogue()[name])
 
 

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from maniskill_taskgrasp.assets.objects.actor import add_object
+from maniskill_taskgrasp.assets.objects.actor import add_fixture, add_object, parts_file
 from maniskill_taskgrasp.assets.objects.geometry import (
     part_corners,
     quat_to_matrix,
 )
 from maniskill_taskgrasp.assets.objects.model import ObjectModel, RestingPose
+from maniskill_taskgrasp.assets.objects.presentation import Presentation, present
 from maniskill_taskgrasp.assets.objects.recipe import load_recipes
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 Image = NDArray[np.uint8]
 TILE = 200  # [pixel] edge of a contact sheet's picture.
+CARD = 300  # [pixel] edge of an object card's pictures.
+FACING = np.array([0.2, -1.0])  # Where the face of a standing thing is turned.
 VIEW = np.array([0.5, -0.66, 0.56])  # Direction from the object to the camera.
 FIELD = 0.35  # [rad] vertical field of view: long, so that shapes are hardly distorted.
 LABEL = 16  # [pixel]
@@ -84,28 +87,94 @@ def pose_shown(model: ObjectModel) -> RestingPose:
     return model.resting_poses[0]
 
 
-def object_picture(studio: Studio, model: ObjectModel, pose: RestingPose) -> Image:
-    """The object in a pose on a white ground, its x axis to the right."""
+def object_picture(
+    studio: Studio, model: ObjectModel, shown: RestingPose | Presentation, parts: bool = False
+) -> Image:
+    """The object on a white ground, on the table or in its fixture, its x axis to the right.
+
+    Args:
+        parts: draw the convex parts, each in its own colour, instead of the mesh.
+    """
     import sapien
 
-    builder = studio.scene.create_actor_builder()
-    add_object(builder, model, visual=True)
-    rotation = _x_right(quat_to_matrix(pose.quat_wxyz))
+    rotation = quat_to_matrix(shown.quat_wxyz)
+    entities, clouds = [], []
+    if isinstance(shown, Presentation) and shown.parts:
+        stand = studio.scene.create_actor_builder()
+        add_fixture(stand, shown, visual=True)
+        entities.append(stand.build_static("stand"))
+        clouds += [part_corners(p) for p in shown.parts]
+    else:
+        rotation = _facing(rotation)
     corners = np.concatenate([part_corners(p) for p in model.parts]) @ rotation.T
-    lift = -corners[:, 2].min()
     frame = np.eye(4)
-    frame[:3, :3], frame[2, 3] = rotation, lift
-    builder.set_initial_pose(sapien.Pose(frame))
-    return studio.photograph([builder.build("object")], corners + np.array([0, 0, lift]))
+    frame[:3, :3] = rotation
+    frame[2, 3] = shown.position[2] if isinstance(shown, Presentation) else -corners[:, 2].min()
+    builder = studio.scene.create_actor_builder()
+    if parts:
+        builder.add_visual_from_file(str(parts_file(model)))
+        entities.append(builder.set_initial_pose(sapien.Pose(frame)).build_static("parts"))
+    else:
+        add_object(builder, model, visual=True)
+        entities.append(builder.set_initial_pose(sapien.Pose(frame)).build("object"))
+    clouds.append(corners + frame[:3, 3])
+    return studio.photograph(entities, np.concatenate(clouds))
 
 
-def _x_right(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The rotation turned about the vertical so that the x axis, if level, lies along world x."""
-    ahead = rotation[:2, 0]
+def _facing(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rotation turned about the vertical: x axis to the right, else the face to the camera."""
+    ahead, wanted = rotation[:2, 0], np.array([1.0, 0.0])
     if np.linalg.norm(ahead) < 0.5:
-        return rotation
-    c, s = ahead / np.linalg.norm(ahead)
-    return np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ rotation
+        ahead, wanted = rotation[:2, 2], FACING
+    a, b = ahead / np.linalg.norm(ahead), wanted / np.linalg.norm(wanted)
+    c, s = a @ b, a[0] * b[1] - a[1] * b[0]
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ rotation
+
+
+def object_card(model: ObjectModel, path: Path) -> None:
+    """Picture file of one object: mesh, convex parts, how it is offered, its poses, its numbers."""
+    from PIL import Image as Pillow
+    from PIL import ImageDraw
+
+    studio = Studio(CARD)
+    offered = present(model)
+    pictures = [
+        ("mesh", object_picture(studio, model, pose_shown(model))),
+        (f"{len(model.parts)} parts", object_picture(studio, model, pose_shown(model), parts=True)),
+        (f"offered: {offered.kind}", object_picture(studio, model, offered)),
+        *(
+            (f"{p.name} {p.probability:.0%}", object_picture(studio, model, p))
+            for p in model.resting_poses[:6]
+        ),
+    ]
+    columns = 3
+    rows = -(-len(pictures) // columns)
+    numbers = _numbers(model)
+    width, text_top = columns * CARD, rows * (CARD + LABEL) + 8
+    card = Pillow.new("RGB", (width, text_top + LABEL * len(numbers) + 8), "white")
+    draw = ImageDraw.Draw(card)
+    for index, (label, picture) in enumerate(pictures):
+        corner = (index % columns * CARD, index // columns * (CARD + LABEL))
+        card.paste(Pillow.fromarray(picture), corner)
+        draw.text((corner[0] + CARD // 2, corner[1] + CARD), label, "black", anchor="ma")
+    for index, line in enumerate(numbers):
+        draw.text((8, text_top + LABEL * index), line, "black")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    card.save(path)
+
+
+def _numbers(model: ObjectModel) -> list[str]:
+    size, held = (
+        " x ".join(f"{100 * e:.1f}" for e in extents) + " cm"
+        for extents in (model.extents_m, model.grasped_extents_m)
+    )
+    return [
+        f"{model.name} ({model.split}, {model.category}, {model.material}, {model.rigidity})",
+        f"{size}, grasped {held}; {1000 * model.mass_kg:.0f} g, friction {model.friction}",
+        f"{model.affordance.shape}, round about {model.affordance.roundness}; "
+        f"stands that hold it: {', '.join(model.stands) or 'none'}",
+        present(model).reason,
+    ]
 
 
 def contact_sheet(models: Sequence[ObjectModel], path: Path, columns: int = 14) -> None:
