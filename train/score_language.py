@@ -15,7 +15,7 @@ import time
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import tyro
 
@@ -30,11 +30,11 @@ class ScoreConfig:
     """Score the language front end."""
 
     split: Literal["dev", "test", "fresh"] = "dev"
-    """Part of the evaluation set."""
+    """Part of the evaluation set; `fresh` was written after the last change to the front end."""
     matcher: Literal["own", "paper"] = "own"
     """Front end: ours, or the paper's recipe."""
     show_errors: bool = False
-    """List the instructions that were answered wrongly (never used on the test split)."""
+    """List the instructions that were answered wrongly (for the dev split only)."""
     only: str = ""
     """One phenomenon only."""
 
@@ -60,7 +60,7 @@ class Outcome:
         return bool(self.top1) and self.object is not False
 
 
-def judge(row: dict[str, object], answer: Instruction | Rejected) -> Outcome:
+def judge(row: dict[str, Any], answer: Instruction | Rejected) -> Outcome:
     """Compare one answer with its row of the evaluation set."""
     if row.get("rejected"):
         return Outcome(None, None, None, None, isinstance(answer, Rejected), None)
@@ -97,60 +97,55 @@ def rate(values: list[bool | None]) -> str:
 
 
 def answer_all(
-    rows: list[dict[str, object]], matcher: Literal["own", "paper"]
+    rows: list[dict[str, Any]], matcher: Literal["own", "paper"]
 ) -> tuple[list[Instruction | Rejected], list[float]]:
-    """Answers and seconds for each row; the models are loaded before the first."""
+    """Answers and CPU seconds for each row; the models are loaded before the first."""
     parse("open the drawer", matcher=matcher)
     answers, seconds = [], []
     for row in rows:
-        start = time.perf_counter()
+        start = time.process_time()
         answers.append(
             parse(str(row["text"]), object_override=row.get("object_override"), matcher=matcher)
         )
-        seconds.append(time.perf_counter() - start)
+        seconds.append(time.process_time() - start)
     return answers, seconds
 
 
-def main(config: ScoreConfig) -> None:
-    """Print the table and the totals."""
-    lines = (DATA / f"instructions_{config.split}.jsonl").read_text("utf-8").splitlines()
-    rows = [r for r in map(json.loads, lines) if config.only in ("", r["phenomenon"])]
-    answers, seconds = answer_all(rows, config.matcher)
-    outcomes = [judge(row, answer) for row, answer in zip(rows, answers, strict=True)]
-    table = defaultdict(list)
+TABLE_COLUMNS = ("top1", "top3", "object", "following", "refused")
+
+
+def print_table(rows: list[dict[str, Any]], outcomes: list[Outcome]) -> None:
+    """One line per phenomenon: percentages, each with how many instructions it is of."""
+    table: dict[str, list[Outcome]] = defaultdict(list)
     for row, outcome in zip(rows, outcomes, strict=True):
         table[row["phenomenon"]].append(outcome)
     print("| phenomenon | n | right | top-1 | top-3 | object | next task | refused rightly |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for name, group in [*table.items(), ("all", outcomes)]:
-        cells = [
-            f"{100 * sum(o.right for o in group) / len(group):.1f}",
-            *(
-                rate([getattr(o, f) for o in group])
-                for f in ("top1", "top3", "object", "following", "refused")
-            ),
-        ]
-        print(f"| {name} | {len(group)} | " + " | ".join(cells) + " |")
+        right = f"{100 * sum(o.right for o in group) / len(group):.1f}"
+        cells = [rate([getattr(o, column) for o in group]) for column in TABLE_COLUMNS]
+        print(f"| {name} | {len(group)} | {right} | " + " | ".join(cells) + " |")
+
+
+def print_totals(outcomes: list[Outcome], seconds: list[float]) -> None:
+    """Rates with Wilson intervals, and the CPU time of one answer."""
     for field in ("top1", "top3", "object", "refused", "wrongly_refused"):
         given = [v for o in outcomes if (v := getattr(o, field)) is not None]
         low, high = wilson(sum(given), len(given))
-        print(
-            f"{field}: {100 * sum(given) / max(1, len(given)):.1f} % of {len(given)} [{100 * low:.1f}, {100 * high:.1f}]"
-        )
-    print(
-        f"latency: median {1e3 * statistics.median(seconds):.1f} ms, most {1e3 * max(seconds):.1f} ms"
-    )
-    if config.show_errors:
-        for row, answer, outcome in zip(rows, answers, outcomes, strict=True):
-            if not outcome.right or outcome.following is False:
-                print(
-                    row["id"],
-                    row["phenomenon"],
-                    repr(row["text"]),
-                    row.get("actions"),
-                    row.get("objects"),
-                )
-                print("    ", brief(answer))
+        share = 100 * sum(given) / max(1, len(given))
+        print(f"{field}: {share:.1f} % of {len(given)} [{100 * low:.1f}, {100 * high:.1f}]")
+    median, most = 1e3 * statistics.median(seconds), 1e3 * max(seconds)
+    print(f"CPU time of one answer: median {median:.1f} ms, most {most:.1f} ms")
+
+
+def print_errors(
+    rows: list[dict[str, Any]], answers: list[Instruction | Rejected], outcomes: list[Outcome]
+) -> None:
+    """Every instruction that was answered wrongly, with its answer."""
+    for row, answer, outcome in zip(rows, answers, outcomes, strict=True):
+        if not outcome.right or outcome.following is False:
+            print(row["id"], row["phenomenon"], repr(row["text"]), row.get("actions", "refuse"))
+            print("    ", brief(answer))
 
 
 def brief(answer: Instruction | Rejected) -> str:
@@ -159,7 +154,20 @@ def brief(answer: Instruction | Rejected) -> str:
         return f"{answer.kind}: {answer.reason}"
     later = [a.action if isinstance(a, Instruction) else a.kind for a in answer.rest]
     top = [(name, round(score, 2)) for name, score in answer.actions_top3]
-    return f"{answer.action} {top} | {answer.object} {answer.object_score:.2f} | {later} | {answer.notes}"
+    held = f"{answer.object} {answer.object_score:.2f}"
+    return f"{answer.action} {top} | {held} | {later} | {answer.notes}"
+
+
+def main(config: ScoreConfig) -> None:
+    """Print the table and the totals."""
+    lines = (DATA / f"instructions_{config.split}.jsonl").read_text("utf-8").splitlines()
+    rows = [r for r in map(json.loads, lines) if config.only in ("", r["phenomenon"])]
+    answers, seconds = answer_all(rows, config.matcher)
+    outcomes = [judge(row, answer) for row, answer in zip(rows, answers, strict=True)]
+    print_table(rows, outcomes)
+    print_totals(outcomes, seconds)
+    if config.show_errors:
+        print_errors(rows, answers, outcomes)
 
 
 if __name__ == "__main__":

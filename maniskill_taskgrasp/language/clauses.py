@@ -119,7 +119,8 @@ def _is_listed(light: str, noun: str, base: str) -> bool:
     """Whether the lexicon means something else by verb and noun: "take a reading" measures."""
     phrases = load_lexicon().phrases
     pair = {p.action for p in phrases.get(light, ()) if noun in p.nouns}
-    return bool(pair) and not pair & {p.action for p in phrases.get(base, ())}
+    alone = {p.action for p in phrases.get(base, ()) if p.specificity == 1}
+    return bool(pair) and not pair & alone
 
 
 def _light_noun(doc: Doc, verb: int, high: int) -> int | None:

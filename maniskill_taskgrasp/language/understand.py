@@ -202,7 +202,10 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
     if object_override is None:
         if held.name is None:
             return no_object(task, text, held)
-        if scores is not None and held.guessed and scores.no_action > NO_ACTION_MAXIMUM:
+        unsure = scores is not None and (
+            not scores.known_verb or scores.no_action > NO_ACTION_MAXIMUM
+        )
+        if held.guessed and unsure:  # One guess may stand, two may not.
             reason = f"no action of the data fits {echo(task.source.clause.text)}: {TRY}"
             return Rejected(text, reason, "off_topic")
     by_meaning = None
