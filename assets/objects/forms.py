@@ -166,3 +166,9 @@ def tube(
         (shift[0] + path_radius * float(np.cos(t)), shift[1] + path_radius * float(np.sin(t)), 0.0)
         for t in np.radians(np.linspace(start, end, steps + 1))
     ]
+
+
+def brush_grip(a: float, b: float, c: float, colour: str) -> Piece:
+    """Round handle along x from 0 to a, thickest at its end, b x c across."""
+    r = b / 2
+    return turned([(0, r * 0.8), (0.006, r), (a * 0.3, r), (a, r * 0.75)], colour, c / b)

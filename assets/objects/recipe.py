@@ -6,13 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from pkgutil import iter_modules
 
+from maniskill_taskgrasp.assets.objects import catalogue
 from maniskill_taskgrasp.assets.objects.pieces import Piece
 
 Size = tuple[float, float, float]
 Maker = Callable[[float, float, float], list[Piece]]
-
-CHAPTERS = ("bottles", "cleaning", "desk", "household", "kitchen", "machine", "power", "tools")
 
 FRICTION = {
     "rubber": 0.9,
@@ -73,7 +73,7 @@ def item(
 
 @cache
 def load_recipes() -> dict[str, Recipe]:
-    """All recipes by name, sorted; importing the chapters registers them."""
-    for chapter in CHAPTERS:
-        import_module(f"maniskill_taskgrasp.assets.objects.catalogue.{chapter}")
+    """All recipes by name, sorted; importing the chapters of the catalogue registers them."""
+    for chapter in iter_modules(catalogue.__path__):
+        import_module(f"{catalogue.__name__}.{chapter.name}")
     return dict(sorted(RECIPES.items()))

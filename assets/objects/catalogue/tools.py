@@ -4,24 +4,18 @@ from __future__ import annotations
 
 from maniskill_taskgrasp.assets.objects.forms import (
     BLACK,
-    BLUE,
     DARK_STEEL,
-    GREY,
     RED,
     STEEL,
     WHITE,
     WOOD,
-    YELLOW,
     band,
     disc,
-    dots,
-    ellipse,
     patch,
 )
 from maniskill_taskgrasp.assets.objects.pieces import (
     Piece,
     arc,
-    bent,
     box,
     convex,
     ring,
@@ -150,114 +144,6 @@ def pliers(a: float, b: float, c: float) -> list[Piece]:
     return pieces
 
 
-@item("wrench", "tools", "metal", length=0.17)
-def wrench(a: float, b: float, c: float) -> list[Piece]:
-    bar = box(a - 0.036, b * 0.52, c * 0.75, STEEL)
-    groove = patch(a * 0.5, b * 0.26, GREY).at(0, 0, c * 0.375)
-    pieces = [bar, groove]
-    for s in (-1, 1):
-        base = slab(
-            [
-                (s * (a / 2 - 0.026), -b * 0.28),
-                (s * (a / 2 - 0.018), -b / 2),
-                (s * (a / 2 - 0.01), -b / 2),
-                (s * (a / 2 - 0.01), b / 2),
-                (s * (a / 2 - 0.018), b / 2),
-                (s * (a / 2 - 0.026), b * 0.28),
-            ],
-            c,
-            STEEL,
-        )
-        tips = [
-            slab(
-                [
-                    (s * (a / 2 - 0.0105), t * b * 0.28),
-                    (s * (a / 2 - 0.0105), t * b / 2),
-                    (s * a / 2, t * b * 0.4),
-                    (s * a / 2, t * b * 0.28),
-                ],
-                c,
-                STEEL,
-            )
-            for t in (-1, 1)
-        ]
-        pieces += [base, *tips]
-    return pieces
-
-
-def hex_key(a: float, b: float, colour: str) -> list[Piece]:
-    """Bent hexagon bar: the long arm along x is what people hold."""
-    long = turned([(-a / 2, b / 2), (a / 2, b / 2)], colour, sides=8).held()
-    short = turned([(0, b / 2), (0.03, b / 2)], colour, sides=8).along((0, 1, 0)).at(a / 2 - b / 2)
-    return [long, short]
-
-
-@item("allen wrench", "tools", "metal")
-def allen_wrench(a: float, b: float, c: float) -> list[Piece]:
-    return hex_key(a, b / 0.924, "#34373c")
-
-
-@item("hex wrench", "tools", "metal")
-def hex_wrench(a: float, b: float, c: float) -> list[Piece]:
-    key = hex_key(a, b / 0.924, STEEL)
-    return [*key, band(b / 2, 0.045, BLUE).at(-a * 0.24)]
-
-
-@item("calipers", "tools", "metal", length=0.2)
-def calipers(a: float, b: float, c: float) -> list[Piece]:
-    beam = box(a, 0.011, 0.0034, STEEL).at(0, 0.004)
-    fixed = slab(
-        [
-            (-a / 2, -0.002),
-            (-a / 2 + 0.012, -0.002),
-            (-a / 2 + 0.012, -0.0125),
-            (-a / 2 + 0.008, -0.0125),
-        ],
-        0.0034,
-        STEEL,
-    )
-    fixed_up = slab(
-        [(-a / 2, 0.009), (-a / 2 + 0.012, 0.009), (-a / 2 + 0.012, 0.0125)], 0.0034, STEEL
-    )
-    slide = box(0.05, 0.017, c, "#43474e", 0.0015).at(-a / 2 + 0.055, 0.003)
-    jaw = slab(
-        [
-            (-a / 2 + 0.03, -0.004),
-            (-a / 2 + 0.044, -0.004),
-            (-a / 2 + 0.034, -0.0125),
-            (-a / 2 + 0.03, -0.0125),
-        ],
-        0.0034,
-        STEEL,
-    )
-    screen = patch(0.024, 0.01, "#b7c7a4").at(-a / 2 + 0.056, 0.003, c / 2)
-    ticks = [
-        patch(0.0005, 0.004, BLACK).at(-a / 2 + 0.09 + 0.008 * i, 0.006, 0.0017) for i in range(13)
-    ]
-    return [beam, fixed, fixed_up, slide, jaw, screen, *ticks]
-
-
-@item("micrometer", "tools", "metal")
-def micrometer(a: float, b: float, c: float) -> list[Piece]:
-    r = b / 2
-    barrel = turned(
-        [
-            (0, r * 0.55),
-            (a * 0.4, r * 0.55),
-            (a * 0.41, r),
-            (a * 0.84, r),
-            (a * 0.86, r * 0.6),
-            (a, r * 0.6),
-        ],
-        STEEL,
-    ).held()
-    marks = [band(r, 0.0008, BLACK).at(a * x) for x in (0.5, 0.55, 0.6)]
-    spindle = rod(0.0035, 0.03, DARK_STEEL).at(-0.014)
-    frame = bent([(x - 0.03, y, 0) for x, y, _ in arc(0.036, 15, -200, 6)], 0.006, "#30548c")
-    anvil = rod(0.0035, 0.022, DARK_STEEL).at(-0.0565)
-    return [barrel, *marks, spindle, frame, anvil]
-
-
 @item("saw", "tools", "wood")
 def saw(a: float, b: float, c: float) -> list[Piece]:
     """Back saw; people hold the block of its handle, 10 x 4 x 2.5 cm."""
@@ -287,29 +173,6 @@ def saw(a: float, b: float, c: float) -> list[Piece]:
     return [grip, blade, back, *teeth, *bolts]
 
 
-@item("tape measure", "tools", "plastic")
-def tape_measure(a: float, b: float, c: float) -> list[Piece]:
-    case = slab(
-        [
-            (-a / 2 + 0.002, -b / 2),
-            (a / 2, -b / 2),
-            (a / 2, 0),
-            (a * 0.38, b * 0.34),
-            (a * 0.2, b / 2),
-            (-a * 0.2, b / 2),
-            (-a * 0.38, b * 0.38),
-            (-a / 2, b * 0.2),
-            (-a / 2, -b * 0.4),
-        ],
-        c,
-        YELLOW,
-    )
-    faces = [disc(a * 0.36, BLACK).turn((0, 1, 0), -90).at(0, 0, s * c / 2) for s in (-1, 1)]
-    label = disc(a * 0.26, YELLOW).turn((0, 1, 0), -90).at(0, 0, c / 2 + 0.0002)
-    blade = box(0.0022, 0.002, 0.013, WHITE).at(a / 2, -b / 2 + 0.003)
-    return [case, *faces, label, blade.seen_only()]
-
-
 @item("metal clamp", "tools", "metal")
 def metal_clamp(a: float, b: float, c: float) -> list[Piece]:
     """Screw clamp: a C of 3 cm depth, its screw along the C with a 3 cm tommy bar."""
@@ -319,74 +182,6 @@ def metal_clamp(a: float, b: float, c: float) -> list[Piece]:
     foot = rod(0.006, 0.005, DARK_STEEL).at(-a * 0.12, 0.009)
     bar = rod(0.0025, c, STEEL).along((0, 0, 1)).at(a / 2 - 0.006, 0.009)
     return [spine, *arms, screw, foot, bar]
-
-
-def t_handle(x: float, width: float, r: float, colour: str) -> Piece:
-    """Sliding bar across the end of a tool."""
-    return (
-        turned(
-            [
-                (-width / 2, r * 1.4),
-                (-width / 2 + 0.004, r * 1.4),
-                (-width / 2 + 0.0045, r),
-                (width / 2 - 0.0045, r),
-                (width / 2 - 0.004, r * 1.4),
-                (width / 2, r * 1.4),
-            ],
-            colour,
-        )
-        .along((0, 1, 0))
-        .at(x)
-    )
-
-
-@item("chuck key", "tools", "metal")
-def chuck_key(a: float, b: float, c: float) -> list[Piece]:
-    shaft = turned([(-a / 2, b / 2), (a * 0.3, b / 2)], DARK_STEEL).held()
-    gear = turned(
-        [(a * 0.3, b / 2), (a * 0.42, b / 2)],
-        STEEL,
-        sides=12,
-    ).held()
-    tip = turned([(a * 0.42, b * 0.25), (a / 2, b * 0.25)], STEEL).held()
-    square = box(0.012, b, c, DARK_STEEL).at(-a / 2 + 0.006).held()
-    return [shaft, gear, tip, square, t_handle(-a / 2 + 0.006, 0.07, 0.003, STEEL)]
-
-
-@item("lathe key", "tools", "metal")
-def lathe_key(a: float, b: float, c: float) -> list[Piece]:
-    """Square-ended chuck key without its bar, which is taken out."""
-    shaft = turned(
-        [(-a / 2, b / 2), (-a * 0.2, b / 2), (-a * 0.18, b * 0.36), (a * 0.3, b * 0.36)], STEEL
-    )
-    square = box(a * 0.22, b * 0.66, c * 0.66, DARK_STEEL).at(a * 0.39)
-    hole = [
-        disc(0.0025, BLACK).turn((0, 1, 0), -90).at(-a * 0.36, 0, s * c / 2 * 0.99) for s in (-1, 1)
-    ]
-    return [shaft, square, *hole]
-
-
-@item("tap with t-shaped handle", "tools", "metal")
-def tap_with_t_handle(a: float, b: float, c: float) -> list[Piece]:
-    r = b / 2
-    shaft = turned(
-        [(-a / 2, r), (-a * 0.2, r), (-a * 0.17, r * 0.5), (a * 0.1, r * 0.5)], STEEL
-    ).held()
-    tap = turned([(a * 0.1, r * 0.42), (a * 0.46, r * 0.42), (a / 2, r * 0.25)], "#8a6d2a").held()
-    threads = [
-        band(r * 0.42, 0.0015, "#5c4718").at(a * x) for x in (0.2, 0.24, 0.28, 0.32, 0.36, 0.4)
-    ]
-    return [shaft, tap, *threads, t_handle(-a * 0.42, 0.11, 0.005, STEEL)]
-
-
-@item("tool with t-shaped handle", "tools", "metal")
-def tool_with_t_handle(a: float, b: float, c: float) -> list[Piece]:
-    r = b / 2
-    shaft = turned(
-        [(-a / 2, r), (-a * 0.4, r), (-a * 0.36, r * 0.6), (a * 0.5, r * 0.6)], STEEL
-    ).held()
-    grip = turned([(-0.045, 0.009), (-0.04, 0.011), (0.04, 0.011), (0.045, 0.009)], RED)
-    return [shaft, grip.along((0, 1, 0)).at(-a / 2 + 0.002)]
 
 
 @item("swiss army knife", "tools", "plastic")
@@ -441,13 +236,6 @@ def tweezer(a: float, b: float, c: float) -> list[Piece]:
     ]
 
 
-@item("thin parallel", "tools", "metal")
-def thin_parallel(a: float, b: float, c: float) -> list[Piece]:
-    bar = box(a, b, c, STEEL)
-    holes = dots([(-a * 0.3, 0), (0, 0), (a * 0.3, 0)], 0.005, BLACK)
-    return [bar, *(h.at(0, 0, s * c / 2) for h in holes for s in (-1, 1))]
-
-
 @item("round handle", "tools", "metal")
 def round_handle(a: float, b: float, c: float) -> list[Piece]:
     """Handwheel with four spokes."""
@@ -455,42 +243,3 @@ def round_handle(a: float, b: float, c: float) -> list[Piece]:
     hub = rod(0.016, c, DARK_STEEL)
     spokes = [box(c * 0.5, a - 0.02, 0.01, "#b3352c").turn((1, 0, 0), angle) for angle in (45, 135)]
     return [rim, hub, *spokes, disc(0.006, STEEL).at(c / 2)]
-
-
-@item("bit", "tools", "metal")
-def screw_bit(a: float, b: float, c: float) -> list[Piece]:
-    r = b / 2
-    return [
-        turned([(-a / 2, r), (-a * 0.16, r)], DARK_STEEL),
-        rod(r * 0.6, a * 0.5, STEEL).at(a * 0.08),
-        turned([(a * 0.3, r * 0.8), (a * 0.42, r * 0.8), (a / 2, r * 0.2)], "#c9a24a"),
-        band(r, 0.006, RED).at(-a * 0.24),
-    ]
-
-
-@item("compass", "stationery", "metal")
-def drawing_compass(a: float, b: float, c: float) -> list[Piece]:
-    legs = [
-        convex(
-            [
-                (x, s * y, z)
-                for x, y in (
-                    (a * 0.34, 0.0006),
-                    (a * 0.34, b * 0.4),
-                    (-a * 0.2, b / 2),
-                    (-a * 0.2, b * 0.22),
-                    (-a / 2, b * 0.3),
-                    (-a / 2, b * 0.36),
-                )
-                for z in (-c * 0.3, c * 0.3)
-            ],
-            STEEL,
-        )
-        for s in (-1, 1)
-    ]
-    head = turned(
-        [(a * 0.34, c / 2), (a * 0.38, c / 2), (a * 0.4, c * 0.3), (a / 2, c * 0.3)], BLACK
-    )
-    hinge = slab(ellipse(b * 0.7, b * 0.7), c, DARK_STEEL).at(a * 0.31)
-    lead = rod(0.0012, 0.012, RED).at(-a / 2 + 0.006, b * 0.33)
-    return [*legs, head, hinge, lead.seen_only()]
