@@ -108,8 +108,8 @@ class JointPosController(BaseController):
 
     def memory(self) -> dict[str, Tensor]:
         """Everything that later steps depend on, as (num_envs, ...) 2-D float tensors."""
-        fields = ((name, getattr(self, name)) for name in self._memory)
-        return {name: field.float().reshape(len(field), -1) for name, field in fields}
+        fields = {name: getattr(self, name).float().clone() for name in self._memory}
+        return {name: field.reshape(len(field), -1) for name, field in fields.items()}
 
     def set_state(self, state: dict[str, Tensor] | None, env_idx: Tensor | None = None) -> None:
         """Take back what `get_state` or `memory` gave, for some environments or all."""
