@@ -106,7 +106,9 @@ def find_grasp(obj: str, topology: Topology, presentation: str, budget: SearchBu
     if path.is_file():
         data = json.loads(path.read_text("utf-8"))
         fields: dict[str, Any] = data.pop("grasp")
-        frozen = {name: tuple(v) if isinstance(v, list) else v for name, v in fields.items()}
+        frozen: dict[str, Any] = {
+            name: tuple(v) if isinstance(v, list) else v for name, v in fields.items()
+        }
         return FoundGrasp(Grasp(**frozen), **data, cached=True)
     found = search(obj, topology, presentation, budget)
     data = asdict(found)

@@ -16,7 +16,7 @@ from typing import Any
 from maniskill_taskgrasp.assets.objects.store import write_atomically
 from maniskill_taskgrasp.knowledge import Affordance, Knowledge
 from maniskill_taskgrasp.selection.feasibility import feasible
-from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
+from maniskill_taskgrasp.topology import TOPOLOGIES, resolve_topology
 
 PAIRS_FILE = "evaluation_pairs.json"
 PER_TOPOLOGY = 3  # Objects a topology in the paper's Table I.
@@ -42,7 +42,8 @@ RULE = (
     f"Where that leaves a topology fewer than {PER_TOPOLOGY} objects, others that fit its reach "
     f"and payload fill it up. Table I: the {PER_TOPOLOGY} fitting objects with most rows for the "
     "topology; ties go to objects that no earlier topology of the table uses, then to those with "
-    "most rows in all, then by name. Presentation: by rule from object and topology (tasks/placement.py, suited)."
+    "most rows in all, then by name. Presentation: by rule from object and topology "
+    "(tasks/placement.py, suited)."
 )
 
 

@@ -164,7 +164,7 @@ def save_atomically(path: Path, arrays: dict[str, np.ndarray]) -> None:
     """Write an npz file that is either whole or absent."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
-        np.savez_compressed(file, **arrays)
+        np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
     Path(file.name).chmod(0o644)
     Path(file.name).replace(path)
 
