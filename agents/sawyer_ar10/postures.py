@@ -26,6 +26,7 @@ def _posture(
     tilt: float = 0.0,
     roll: float = 0.0,
     yaw: float = 0.0,
+    feasible: bool = True,
 ) -> Posture:
     """Posture from (open, closed) pairs of (first, second) joint a digit; one pair holds still."""
     preshape: list[float] = []
@@ -42,6 +43,7 @@ def _posture(
         tilt=tilt,
         roll=roll,
         yaw=yaw,
+        feasible=feasible,
         reason=reason,
     )
 
@@ -121,6 +123,7 @@ POSTURES: dict[str, Posture] = {
         "index and middle have parallel axes: a thin plate wedges between them, no scissor motion",
         tilt=0.64,
         roll=0.2,
+        feasible=False,
     ),
     "intermediate_add_2": _posture(
         ((0.85, 0.34), (1.40, 0.60)),

@@ -49,6 +49,10 @@ REACH: dict[str, Reach] = {
     "Precision side abd 3": Reach(0.005, 0.020, 0.2),
 }
 assert tuple(REACH) == TOPOLOGY_NAMES
+UNFORMED = {
+    "Intermediate abd 2": "index and middle finger cannot spread, and no searched grasp held",
+}
+"""Topologies that this hand cannot form, whatever the object (docs/planning.md)."""
 
 
 def feasible(topology: Topology | str, affordance: Affordance) -> tuple[bool, str]:
@@ -66,6 +70,8 @@ def feasible(topology: Topology | str, affordance: Affordance) -> tuple[bool, st
     name = (resolve_topology(topology) if isinstance(topology, str) else topology).name
     if affordance.is_floppy:
         return False, "floppy: no fixed shape that rigid-body simulation could carry"
+    if name in UNFORMED:
+        return False, UNFORMED[name]
     reach = REACH[name]
     extents = closing_extents(affordance)
     fitting = [e for e in extents if reach.thinnest_m <= e <= reach.thickest_m]
