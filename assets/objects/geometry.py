@@ -79,7 +79,8 @@ def _local_corners(part: Part, circle: int) -> Array:
     if part.kind == "capsule":
         radius, half = part.size
         ball = _ball(circle) * radius
-        return np.concatenate([ball - np.array([half, 0, 0]), ball + np.array([half, 0, 0])])
+        low, high = ball[ball[:, 0] <= 0], ball[ball[:, 0] > 0]
+        return np.concatenate([low - np.array([half, 0, 0]), high + np.array([half, 0, 0])])
     assert part.vertices is not None
     return part.vertices
 
