@@ -7,13 +7,16 @@ import pytest
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.knowledge import Affordance, load_knowledge
 from maniskill_taskgrasp.selection import feasible
-from maniskill_taskgrasp.selection.feasibility import REACH, closing_extents
+from maniskill_taskgrasp.selection.feasibility import REACH, UNFORMED, closing_extents
 from maniskill_taskgrasp.topology import TOPOLOGIES
 
 ROD = Affordance("rod", (0.14, 0.04, 0.04), 0.1, "b/c", "rigid", "a", "prolate", "cylinder")
 
 
-@pytest.mark.parametrize("topology", TOPOLOGIES, ids=lambda t: t.slug)
+FORMED = [topology for topology in TOPOLOGIES if topology.name not in UNFORMED]
+
+
+@pytest.mark.parametrize("topology", FORMED, ids=lambda t: t.slug)
 def test_limits_decide_and_are_named(topology):
     """Each topology takes its limits' edges and refuses what is just beyond, saying the number."""
     reach = REACH[topology.name]
@@ -28,6 +31,14 @@ def test_limits_decide_and_are_named(topology):
     able, why = feasible(topology, heavy)
     assert not able
     assert " g" in why
+
+
+@pytest.mark.parametrize("name", UNFORMED)
+def test_what_the_hand_cannot_form_fits_nothing(name):
+    """Not even a thing within the reach that the topology would have."""
+    reach = REACH[name]
+    fits = replace(ROD, dimensions_m=(0.15,) + 2 * (reach.thickest_m,), mass_kg=0.01)
+    assert feasible(name, fits) == (False, UNFORMED[name])
 
 
 def test_heavier_or_wider_never_helps():
