@@ -30,7 +30,7 @@ class EvaluateConfig:
     """File of sentences, one a line (or JSON lines with "text" and "objects", those meant): each
     is understood and carried out."""
     limit: int | None = None
-    """Only so many of the rows."""
+    """Only so many of the pairs or sentences, evenly from the whole list."""
     episodes: int = 100
     """Episodes for each pair."""
     noise: str = "paper"

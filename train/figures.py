@@ -150,7 +150,7 @@ def _fingertips(axes: Axes3D, trace: Trace, model: ObjectModel) -> None:
     axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
     axes.tick_params(labelsize=6)
     axes.locator_params(nbins=4)
-    axes.set_box_aspect((1, 1, 1))
+    axes.set_box_aspect((1, 1, 1), zoom=1.25)
     axes.view_init(elev=18, azim=35)
 
 

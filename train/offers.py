@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from maniskill_taskgrasp.assets.objects import library
+from maniskill_taskgrasp.assets.objects.meshfile import SUFFIXES
 from maniskill_taskgrasp.assets.objects.model import ObjectModel
 from maniskill_taskgrasp.assets.objects.presentation import KINDS
 from maniskill_taskgrasp.errors import InputError, echo, unknown_name
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from maniskill_taskgrasp.selection import Selector
 
 ACTION = "picking up"  # What the selector is told where no sentence names an action.
-MESH_SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".dae", ".3mf")
 
 
 @dataclass(frozen=True)
@@ -76,8 +76,16 @@ def list_offers(config: EvaluateConfig) -> list[Offer]:
         offers = list(_of_objects(config))
     if not offers:
         raise InputError("there is nothing to evaluate: no object or sentence was found")
-    distinct = {offer.key: offer for offer in offers}
-    return [_presented(o, config.presentation) for o in list(distinct.values())[: config.limit]]
+    distinct = list({offer.key: offer for offer in offers}.values())
+    chosen = spread(distinct, config.limit) if config.limit else distinct
+    return [_presented(offer, config.presentation) for offer in chosen]
+
+
+def spread(offers: list[Offer], limit: int) -> list[Offer]:
+    """At most so many of the offers, evenly from first to last."""
+    if limit >= len(offers):
+        return offers
+    return [offers[i * len(offers) // limit] for i in range(limit)]
 
 
 def _of_objects(config: EvaluateConfig) -> Iterable[Offer]:
@@ -102,14 +110,14 @@ def _sources(config: EvaluateConfig) -> list[str]:
     if config.mesh_dir is not None:
         if not config.mesh_dir.is_dir():
             raise InputError(f"--mesh-dir must be a folder of meshes, got {echo(config.mesh_dir)}")
-        meshes = sorted(p for p in config.mesh_dir.iterdir() if p.suffix.lower() in MESH_SUFFIXES)
+        meshes = sorted(p for p in config.mesh_dir.iterdir() if p.suffix.lower() in SUFFIXES)
         if not meshes:
-            known = ", ".join(MESH_SUFFIXES)
+            known = ", ".join(SUFFIXES)
             raise InputError(f"no mesh in {echo(config.mesh_dir)}: files may end in {known}")
         return [str(path) for path in meshes]
     sources: list[str] = []
     for name in config.objects or ("test",):
-        sources += library.names(name) if name in (*library.SPLITS, "all") else [name]
+        sources += library.names(name) if name in (*library.SPLITS, "all", "imported") else [name]
     return list(dict.fromkeys(sources))
 
 
