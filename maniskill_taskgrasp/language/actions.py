@@ -90,9 +90,8 @@ def matching_phrases(
         if matches(phrase, clause.words, nouns):
             key = (phrase.specificity, -phrase.rank / sizes[phrase.action])
             found[phrase.action] = max(found.get(phrase.action, (0, -1.0)), key)
-    result = next((RESULTS[w] for w in clause.words if w in RESULTS), None)
-    if result is not None and clause.verb not in RESULTLESS:
-        found[result] = (RESULT_SPECIFICITY, 0.0)
+    if clause.result is not None and clause.verb not in RESULTLESS:
+        found[RESULTS[clause.result]] = (RESULT_SPECIFICITY, 0.0)
     return found
 
 

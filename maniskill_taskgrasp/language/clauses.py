@@ -68,6 +68,8 @@ class Clause:
     """The clause as a short imperative, for the sentence encoder."""
     at: int
     """Token of the verb."""
+    result: str | None = None
+    """State that the thing is to be in afterwards: "open", "tight"."""
     earlier: bool = False
     """It is to be done before the clause it hangs on: "after washing ..."."""
 
@@ -186,6 +188,7 @@ def _is_transfer(doc: Doc, token: Token, base: str, clause: Clause) -> bool:
     if base not in TRANSFER_VERBS | {"throw"}:
         return False
     receiver = verb + 1 < len(doc) and doc[verb + 1].lower_ in RECEIVERS
+    receiver = receiver or any(t.lower_ in RECEIVERS and t.dep_ == "pobj" for t in doc[verb:])
     named = {w for m in doc._.mentions for w in m.words.split()}
     for phrase in load_lexicon().phrases.get(base, ()):
         meant = phrase.specificity > 1 and matches(phrase, clause.words, frozenset(clause.words))
@@ -342,8 +345,15 @@ def _finish(
         purpose=hangs and not is_framed(token) and not earlier,
         text=text.strip(" ,"),
         at=token.i,
+        result=_result(doc, token.i, high),
         earlier=earlier,
     )
+
+
+def _result(doc: Doc, verb: int, high: int) -> str | None:
+    """The state that a clause ends in; an adjective before its noun ("a loose screw") is none."""
+    states = [t.lower_ for t in doc[verb + 1 : high] if t.lower_ in RESULTS and t.dep_ != "amod"]
+    return states[0] if states else None
 
 
 def _leads_place(token: Token, verb: int) -> bool:

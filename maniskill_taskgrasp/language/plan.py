@@ -165,7 +165,7 @@ def _only_prepares(clause: Clause) -> bool:
     nouns = frozenset(clause.words)
     phrases = load_lexicon().phrases.get(clause.verb, ())
     more = any(p.specificity > 1 and matches(p, clause.words, nouns) for p in phrases)
-    return clause.verb in PREPARING_VERBS and not more
+    return clause.verb in USE_VERBS or (clause.verb in PREPARING_VERBS and not more)
 
 
 def _belongs(told: Told, preparation: Told) -> bool:

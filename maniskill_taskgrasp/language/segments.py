@@ -14,11 +14,7 @@ CONNECTORS = word_set("connectors")
 NEGATORS = tuple(f"{words.strip()} " for words in word_list("negators"))
 DETERMINERS = word_set("determiners")
 PARTICLES = word_set("particles")
-AFTER_VERB = (
-    DETERMINERS
-    | PARTICLES
-    | frozenset(["with", "from", "into", "onto", "at", "to", "for", "using", "again"])
-)
+AFTER_VERB = DETERMINERS | PARTICLES | word_set("after_verb")
 """Words that follow a verb at the start of a new request."""
 IMPERATIVE_ONLY = word_set("imperative_only")
 """Base verbs that start an imperative without naming an action of the data."""

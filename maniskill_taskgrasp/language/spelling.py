@@ -151,7 +151,7 @@ def correct_verb(text: str, position: int) -> tuple[str, tuple[str, ...]]:
     """Text whose word at a position, though English, is read as the verb it misses by one slip."""
     words = text.split()
     core = words[position].strip(".,!?;:'-")
-    slipped = len(core) > SHORTEST and core not in base_forms()
+    slipped = len(core) >= SHORTEST and core not in base_forms()
     fixed = nearest_word(core) if slipped else None
     if fixed is None or fixed not in load_lexicon().verbs or fixed not in likely_words():
         return text, ()
