@@ -25,7 +25,9 @@ OPENING_PHRASES = word_list("opening_phrases")
 IDIOMS = word_map("idioms")
 """Set phrases and the plain words that mean the same here."""
 QUOTES = str.maketrans("’‘“”„«»`´", '\'\'"""""\'\'')
-HESITATION = re.compile(r"^(?:look|listen|see),|,\s*you know(?=,)|\b(?:u+h+|u+m+|h+m+|e+r+m*|ah+)\b,?|\blike,\s")
+HESITATION = re.compile(
+    r"^(?:look|listen|see),|,\s*you know(?=,)|\b(?:u+h+|u+m+|h+m+|e+r+m*|ah+)\b,?|\blike,\s"
+)
 SELF_CORRECTION = re.compile(
     r"(?:^[\w-]+,?\s|\b(?:the|a|an|my|your)\s(?:[\w-]+\s){0,3}?[\w-]+,?\s)"
     r"(?:no|i mean|sorry|or rather),?\s(?=(?:the|a|an|my|your)\s)"
