@@ -1,6 +1,11 @@
 """Laws of the trainer on real ManiSkill tasks on a CPU: exact resume, flags, refusals."""
 
+import os
 import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import pytest
 import torch
@@ -12,6 +17,11 @@ from maniskill_taskgrasp.train.policy import load_policy, policy_env_kwargs
 from maniskill_taskgrasp.train.ppo import parse_config, train
 
 pytestmark = pytest.mark.filterwarnings("ignore")
+SCRIPT = Path(__file__).resolve().parents[1] / "train" / "ppo.py"
+GRASP_FLAGS = (
+    "--env-id TaskGrasp-v0 --num-envs 8 --num-steps 60 --num-minibatches 4 --total-timesteps 2880 "
+    "--num-eval-envs 4 --eval-episodes 4 --eval-freq 4 --save-freq 2 --no-capture-video"
+)
 STOCK_FLAGS = "--env-id PickCube-v1 --no-capture-video --num-steps 60 --num-minibatches 4"
 
 
@@ -35,6 +45,31 @@ def test_resumed_physics_follows_the_uninterrupted_run(stock_run, tmp_path):
     train(config_of(f"--resume {resumed}"))
     one, other = (load_checkpoint(run / "final_ckpt.pt") for run in (stock_run, resumed))
     assert one["iteration"] == other["iteration"] == 4
+    assert all(torch.equal(one["agent"][name], other["agent"][name]) for name in one["agent"])
+
+
+@pytest.mark.slow
+def test_killed_taskgrasp_run_resumes_bit_identical(tmp_path):
+    """kill -9 in the middle of batched grasping; final weights as without it."""
+
+    def start(flags):
+        return subprocess.Popen(
+            [sys.executable, str(SCRIPT), *flags.split(), "--runs-dir", str(tmp_path)],
+            env=os.environ | {"OMP_NUM_THREADS": "1"},
+            stderr=subprocess.DEVNULL,
+        )
+
+    killed = start(f"{GRASP_FLAGS} --exp-name killed")
+    while not (tmp_path / "killed" / "ckpt_2.pt").is_file():
+        assert killed.poll() is None
+        time.sleep(0.1)
+    time.sleep(1)
+    killed.kill()
+    killed.wait()
+    assert not (tmp_path / "killed" / "final_ckpt.pt").exists()
+    assert start(f"{GRASP_FLAGS} --exp-name whole").wait() == 0
+    assert start("--resume killed").wait() == 0
+    one, other = (load_checkpoint(tmp_path / run / "final_ckpt.pt") for run in ("whole", "killed"))
     assert all(torch.equal(one["agent"][name], other["agent"][name]) for name in one["agent"])
 
 

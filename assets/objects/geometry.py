@@ -178,9 +178,30 @@ def spread_points(parts: Sequence[Part], n: int, seed: int) -> NDArray[np.float3
     points = corners[picked, 0] + u * edge_u[picked] + v * edge_v[picked]
     outside = np.ones(len(points), dtype=bool)
     for index, part in enumerate(parts):
+        own = owner[picked] == index
+        points[own] = _onto_surface(part, points[own])
+    for index, part in enumerate(parts):
         outside &= (owner[picked] == index) | (depth_inside(part, points) < 1e-4)
     points = points[outside] if outside.sum() >= n else points
     return _farthest(points, n).astype(np.float32)
+
+
+def _onto_surface(part: Part, points: Array) -> Array:
+    """Points of a round part's facets (n, 3) moved out to the round surface itself."""
+    if part.kind not in ("sphere", "capsule", "cylinder"):
+        return points
+    rotation, radius = quat_to_matrix(part.quat_wxyz), part.size[0]
+    local = (points - part.position) @ rotation
+    axis = np.zeros_like(local)
+    if part.kind != "sphere":
+        axis[:, 0] = np.clip(local[:, 0], -part.size[1], part.size[1])
+    out = local - axis
+    length = np.linalg.norm(out, axis=1, keepdims=True)
+    # The end discs of a cylinder are flat already.
+    side = np.abs(local[:, :1]) < part.size[1] - 1e-9 if part.kind == "cylinder" else length > 0
+    moved = np.where(side, axis + out * radius / np.maximum(length, 1e-12), local)
+    placed: Array = moved @ rotation.T + part.position
+    return placed
 
 
 def _farthest(points: Array, n: int) -> Array:

@@ -13,7 +13,7 @@ from maniskill_taskgrasp.errors import InputError, echo
 if TYPE_CHECKING:
     import trimesh
 
-SUFFIXES = (".stl", ".obj", ".ply", ".glb", ".gltf", ".off", ".3mf", ".dae")
+SUFFIXES = (".stl", ".obj", ".ply", ".glb", ".gltf", ".off", ".3mf")
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 MAX_BYTES = 150_000_000  # Read nothing larger: some 3 million triangles.
 MAX_FACES = 2_000_000
