@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -25,7 +26,7 @@ class SearchSpace:
 
 def cross_entropy(
     score: Callable[[Array], Array],
-    start: Array,
+    starts: Array,
     space: SearchSpace,
     rng: np.random.Generator,
     *,
@@ -33,35 +34,57 @@ def cross_entropy(
     generations: int,
     first: int = 1,
     elite: float = 0.15,
+    enough: float = math.inf,
 ) -> tuple[Array, Array]:
     """Maximise a noisy score.
 
     Args:
         score: (population, dims) candidates -> (population,) scores.
-        start: (dims,) centre of the first generation.
+        starts: (k, dims) centres of the first generation, which share it evenly, the best first.
         first: populations in the first generation; a wide look keeps out of bad basins.
+        enough: mean score of a generation after which the search stops.
 
     Returns:
         (dims,) mean of the best generation's elite, and every candidate with its score,
-        (generations * population, dims + 1).
+        (tried, dims + 1).
     """
-    mean, spread, history = start.copy(), space.spread.copy(), []
+    mean, spread, history = starts[0], space.spread.copy(), []
     best_mean, best_value = mean, -np.inf
-    count = max(4, int(elite * population))
     for generation in range(generations):
+        centres = starts if generation == 0 else mean[None]
         looks = []
         for _ in range(first if generation == 0 else 1):
-            batch = rng.normal(mean, spread, (population, len(mean)))
-            batch[0] = mean
+            centre = centres[np.arange(population) % len(centres)]
+            batch = rng.normal(centre, spread, (population, len(mean)))
+            batch[: len(centres)] = centres
             batch = batch.clip(space.lower, space.upper)
             looks.append(np.column_stack([batch, score(batch)]))
         tried = np.concatenate(looks)
-        candidates, values = tried[:, :-1], tried[:, -1]
         history.append(tried)
-        top = candidates[np.argsort(-values, kind="stable")[:count]]
-        value = float(np.sort(values)[-count:].mean())
-        mean = 0.2 * mean + 0.8 * top.mean(0)
+        group, value, top = _best_group(np.stack(looks), len(centres), elite)
+        mean = 0.2 * centres[group] + 0.8 * top.mean(0)
         spread = np.maximum(0.3 * spread + 0.7 * top.std(0), space.floor)
         if value >= best_value:
             best_mean, best_value = mean, value
+        if tried[:, -1].mean() >= enough:
+            break
     return best_mean, np.concatenate(history)
+
+
+def _best_group(looks: Array, num_groups: int, elite: float) -> tuple[int, float, Array]:
+    """The group of candidates whose best are best: basins must not be averaged.
+
+    Args:
+        looks: (first, population, dims + 1) candidates with their scores; groups take turns.
+
+    Returns:
+        its number, the mean score of its elite, and the elite (count, dims).
+    """
+    best = (0, -np.inf, looks[0, :1, :-1])
+    for number in range(num_groups):
+        group = looks[:, number::num_groups].reshape(-1, looks.shape[-1])
+        order = np.argsort(-group[:, -1], kind="stable")
+        top = group[order[: max(4, int(elite * looks.shape[1]) // num_groups)]]
+        if top[:, -1].mean() > best[1]:
+            best = (number, float(top[:, -1].mean()), top[:, :-1])
+    return best

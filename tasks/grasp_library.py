@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from importlib.resources import files
@@ -56,9 +57,17 @@ class Grasp:
         return float(ratios.sum() + 0.5 * height + stand - WORTH * worth)
 
 
-def nearest_grasps(topology: str, placement: Placement, count: int = 1) -> list[Grasp]:
-    """Stored grasps of a topology that suit the placed object best, best first; may be empty."""
-    own = [grasp for grasp in stored_grasps() if grasp.topology == topology]
+def nearest_grasps(
+    topology: str, placement: Placement, count: int = 1, known: Sequence[Grasp] | None = None
+) -> list[Grasp]:
+    """Grasps of a topology that suit the placed object best, best first; may be empty.
+
+    Args:
+        topology: slug.
+        known: among which; by default those that are shipped.
+    """
+    known = stored_grasps() if known is None else known
+    own = [grasp for grasp in known if grasp.topology == topology]
     return sorted(own, key=lambda grasp: grasp.mismatch(placement))[:count]
 
 

@@ -117,9 +117,18 @@ class GraspTrials:
     """Trials of candidate grasps on one object, many at once."""
 
     def __init__(
-        self, obj: str, topology: Topology, presentation: str, noise: str, num_envs: int
+        self,
+        obj: str,
+        topology: Topology,
+        presentation: str,
+        noise: str,
+        num_envs: int,
+        processes: int = 0,
     ) -> None:
         """
+        Args:
+            processes: that share the physics; 0 chooses.
+
         Raises:
             InputError: unknown object, presentation or noise.
         """
@@ -132,6 +141,7 @@ class GraspTrials:
             noise=noise,
             reward_mode="none",
             obs="paper",
+            sim_config={"scene_config": {"cpu_workers": processes}},
         ).unwrapped
         self.num_envs = num_envs
         self._policy = ConstantClosing(self.env)

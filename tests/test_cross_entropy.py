@@ -19,7 +19,8 @@ def bowl(candidates):
 
 def search(score, seed=0, **kwargs):
     rng = np.random.default_rng(seed)
-    return cross_entropy(score, np.zeros(3), SPACE, rng, population=40, generations=12, **kwargs)
+    start = np.zeros((1, 3))
+    return cross_entropy(score, start, SPACE, rng, population=40, generations=12, **kwargs)
 
 
 def test_cross_entropy_finds_the_top_of_a_smooth_hill():
@@ -44,3 +45,24 @@ def test_cross_entropy_looks_wide_first():
     _, history = search(bowl, first=3)
     assert len(history) == 40 * (12 + 2)
     assert history[:120, :3].std() > 3 * history[-40:, :3].std(axis=0).mean()
+
+
+def test_cross_entropy_does_not_average_basins():
+    """Of two hills, one on each side, the higher one is climbed, not the valley between."""
+    left, right = np.full(3, -1.5), np.full(3, 1.5)
+
+    def hills(candidates):
+        heights = [np.exp(-4 * ((candidates - top) ** 2).sum(1)) for top in (left, right)]
+        return heights[0] + 1.2 * heights[1]
+
+    rng = np.random.default_rng(0)
+    best, _ = cross_entropy(
+        hills, np.stack([left, right]), SPACE, rng, population=40, generations=8
+    )
+    np.testing.assert_allclose(best, right, atol=0.1)
+
+
+def test_cross_entropy_stops_when_a_generation_is_good_enough():
+    _, history = search(bowl, enough=-0.5)
+    assert len(history) < 40 * 12
+    assert history[-40:, 3].mean() >= -0.5

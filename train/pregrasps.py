@@ -8,39 +8,28 @@ from __future__ import annotations
 import itertools
 import json
 from collections.abc import Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 import tyro
-from numpy.typing import NDArray
 from scipy.cluster.vq import kmeans2
+from tqdm import tqdm
 
-from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.assets.objects import library
 from maniskill_taskgrasp.assets.objects.presentation import KINDS
+from maniskill_taskgrasp.assets.objects.store import write_atomically
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.selection.feasibility import feasible
-from maniskill_taskgrasp.tasks.cross_entropy import SearchSpace, cross_entropy
 from maniskill_taskgrasp.tasks.grasp_library import Grasp, dump_grasps
+from maniskill_taskgrasp.tasks.grasp_search import GraspSearch, SearchBudget, SearchResult
 from maniskill_taskgrasp.tasks.placement import place
-from maniskill_taskgrasp.tasks.pose_search import (
-    POSTURE_FLOOR,
-    POSTURE_SPREAD,
-    PREGRASP_FLOOR,
-    PREGRASP_LOWER,
-    PREGRASP_SPREAD,
-    PREGRASP_UPPER,
-    GraspTrials,
-    PostureSpace,
-)
+from maniskill_taskgrasp.tasks.pose_search import GraspTrials
 from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
 
-Array = NDArray[np.float64]
-GOOD_START = 0.5  # Success in lift and form from which a grasp may start another search.
-LOW = 0.04  # [m] lying objects lower than this want the fingertips below them.
-SCOOP = np.array([0.0, -0.018, 0.0, 0.25, 0.0, 0.0])  # Palm lower and fingers down (facts, 3).
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 
 
@@ -58,10 +47,11 @@ class PregraspConfig:
     num_envs: int = 64
     """Candidates a generation."""
     generations: int = 9
+    """Most generations of a search."""
     first: int = 3
-    """Populations in the first generation of a search that starts from the rule."""
-    final: int = 2
-    """Generations of them that run to the end of the clock."""
+    """Batches in the first generation of a search that knows no good start."""
+    processes: int = 2
+    """Searches at a time."""
     noise: str = "paper"
     seed: int = 0
     out: Path = ASSETS / "pregrasps.json"
@@ -74,8 +64,8 @@ class PregraspConfig:
                 raise InputError(f"{name!r} is a test object; grasps are searched on train objects")
 
 
-def suitable(topology: Topology) -> list[str]:
-    """Train objects that the hand can hold so, and that people were seen to hold so."""
+def suitable(topology: Topology) -> tuple[list[str], list[str]]:
+    """Train objects that the hand can hold so: those that people were seen to hold so, others."""
     human = {
         obj
         for (obj, _), counts in load_knowledge().pair_counts.items()
@@ -86,13 +76,13 @@ def suitable(topology: Topology) -> list[str]:
         for name in library.names("train")
         if feasible(topology, library.load(name).affordance)[0]
     ]
-    return [name for name in able if name in human] or able
+    return [name for name in able if name in human], [n for n in able if n not in human]
 
 
 def typical(names: list[str], count: int, topology: Topology) -> list[str]:
     """The most typical objects: nearest to the centres of `count` clusters of placed sizes."""
-    if len(names) <= count:
-        return names
+    if len(names) <= count or count < 1:
+        return names[: max(count, 0)]
     placed = [place(library.load(name), topology=topology) for name in names]
     # Along the object (y) its size matters little; a stand of its own is a class of its own.
     scale = np.array([1.0, 0.25, 0.7])
@@ -112,82 +102,30 @@ def pairs(config: PregraspConfig) -> Iterator[tuple[Topology, str]]:
     for topology in wanted:
         names = list(config.objects)
         if not names:
-            names = typical(suitable(topology), config.per_topology, topology)
+            seen, others = suitable(topology)
+            names = typical(seen, config.per_topology, topology)
+            names += typical(others, config.per_topology - len(names), topology)
         lists.append([(topology, name) for name in names])
     for row in itertools.zip_longest(*lists):
         yield from (pair for pair in row if pair is not None)
 
 
-def first_guess(
-    trials: GraspTrials, topology: Topology, posture: PostureSpace, done: list[Grasp]
-) -> tuple[Array, float, int]:
-    """Where a search starts, its spread and the generations it may skip.
-
-    A good grasp of the same topology on another object is a better start than the rule.
-    """
-    placement = trials.env.placements[0]
-    known = [g for g in done if g.topology == topology.slug and g.both >= GOOD_START]
-    if known:
-        near = min(known, key=lambda grasp: grasp.mismatch(placement))
-        numbers = posture.compress(np.array(near.preshape), np.array(near.closing))
-        return np.concatenate([near.pregrasp, numbers]), 0.7, 2
-    rule = trials.env.planner.bounding_box(topology.slug, placement).numpy()
-    if placement.extents[2] < LOW:
-        rule += SCOOP
-    return np.concatenate([rule, posture.start()]), 1.0, 0
-
-
-def search(topology: Topology, obj: str, config: PregraspConfig, done: list[Grasp]) -> Grasp:
-    """Search one pair; the figures stored are of fresh trials."""
-    trials = GraspTrials(obj, topology, config.presentation, config.noise, config.num_envs)
-    placement = trials.env.placements[0]
-    posture = PostureSpace.of(AR10, topology)
-    start, spread, skipped = first_guess(trials, topology, posture, done)
-    generations = config.generations - skipped
-    space = SearchSpace(
-        lower=np.concatenate([PREGRASP_LOWER, posture.lower]),
-        upper=np.concatenate([PREGRASP_UPPER, posture.upper]),
-        spread=spread * np.concatenate([PREGRASP_SPREAD, POSTURE_SPREAD]),
-        floor=np.concatenate([PREGRASP_FLOOR, POSTURE_FLOOR]),
+def search(topology: Topology, obj: str, config: PregraspConfig, done: list[Grasp]) -> SearchResult:
+    """Search one pair, starting from what was found for others."""
+    trials = GraspTrials(
+        obj, topology, config.presentation, config.noise, config.num_envs, processes=1
     )
-    wide = 1 if skipped else config.first
-    evaluations = generations + wide - 1
-    generation = itertools.count()
-
-    def score(candidates: Array) -> Array:
-        number = next(generation)
-        whole = number >= evaluations - config.final
-        shapes = posture.expand(candidates[:, 6:])
-        seed = config.seed + 1000 * (number + 1)
-        return trials.run(candidates[:, :6], *shapes, seed, whole=whole)[2]
-
-    best, _ = cross_entropy(
-        score,
-        start,
-        space,
-        np.random.default_rng(config.seed),
-        population=config.num_envs,
-        generations=generations,
-        first=wide,
+    budget = SearchBudget(
+        generations=config.generations,
+        first=config.first,
+        num_envs=config.num_envs,
+        noise=config.noise,
+        seed=config.seed,
     )
-    preshape, closing = posture.expand(np.tile(best[6:], (config.num_envs, 1)))
-    lifted, both, _ = trials.run(
-        np.tile(best[:6], (config.num_envs, 1)), preshape, closing, config.seed, whole=True
-    )
-    trials.close()
-    return Grasp(
-        topology=topology.slug,
-        obj=obj,
-        presentation=placement.presentation.kind,
-        extents=tuple(np.round(placement.extents, 5).tolist()),
-        height=round(float(placement.centre[2]), 5),
-        pregrasp=tuple(np.round(best[:6], 5).tolist()),
-        preshape=tuple(np.round(preshape[0], 4).tolist()),
-        closing=tuple(np.round(closing[0], 4).tolist()),
-        lift=round(float(lifted.mean()), 4),
-        both=round(float(both.mean()), 4),
-        trials=config.num_envs,
-    )
+    try:
+        return GraspSearch(trials, topology, budget, done).run()
+    finally:
+        trials.close()
 
 
 def main(config: PregraspConfig) -> None:
@@ -195,19 +133,29 @@ def main(config: PregraspConfig) -> None:
     if config.out.exists():
         done = [Grasp(**row) for row in json.loads(config.out.read_text("utf-8"))]
     have = {(grasp.topology, grasp.obj) for grasp in done}
-    for topology, obj in pairs(config):
-        if (topology.slug, obj) in have:
-            continue
-        grasp = search(topology, obj, config, done)
-        print(
-            f"{topology.name:24s} {obj:28s} {grasp.presentation:6s} "
-            f"lift {grasp.lift:.2f} both {grasp.both:.2f}",
-            flush=True,
-        )
-        done.append(grasp)
-        partial = config.out.with_suffix(".partial")
-        partial.write_text(dump_grasps(done), "utf-8")
-        partial.replace(config.out)
+    todo = [(t, obj) for t, obj in pairs(config) if (t.slug, obj) not in have]
+    # Spawned, not forked: a simulation that was built before a fork is no good after it.
+    with ProcessPoolExecutor(config.processes, mp_context=get_context("spawn")) as pool:
+        waiting: dict[Future[SearchResult], Topology] = {}
+        bar = tqdm(total=len(todo), unit="search")
+        while todo or waiting:
+            while todo and len(waiting) < config.processes:
+                topology, obj = todo.pop(0)
+                waiting[pool.submit(search, topology, obj, config, done)] = topology
+            for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+                topology, result = waiting.pop(future), future.result()
+                done.append(result.grasp)
+                write_atomically(config.out, dump_grasps(done).encode())
+                bar.update()
+                bar.write(_line(topology, result))
+
+
+def _line(topology: Topology, result: SearchResult) -> str:
+    grasp = result.grasp
+    return (
+        f"{topology.name:22s} {grasp.obj:26s} {grasp.presentation:6s} lift {grasp.lift:.2f} "
+        f"both {grasp.both:.2f}  {result.spent:4d} trials, from {result.start!r}"
+    )
 
 
 if __name__ == "__main__":
