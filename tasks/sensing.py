@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,9 @@ from torch import Tensor
 from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.rotations import quat_to_matrix
 from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, Primitive, rotation
+from maniskill_taskgrasp.tasks.surface import Surface
+
+NEAREST_CELLS = 4  # Cells of the object's surface that are looked at closely for each part.
 
 
 def part_forces(link_forces: Tensor, part_of_link: Tensor, num_parts: int) -> Tensor:
@@ -29,33 +33,20 @@ def part_forces(link_forces: Tensor, part_of_link: Tensor, num_parts: int) -> Te
     return total.index_add_(1, part_of_link, link_forces).norm(dim=-1)
 
 
-def box_distance(points: Tensor, half_size: Tensor) -> Tensor:
-    """Distance of points to a box centred at the origin, 0 inside.
-
-    Args:
-        points: (..., num_points, 3) [m] in the box frame.
-        half_size: (..., 3) [m], broadcast over the points.
-
-    Returns:
-        (..., num_points) [m]
-    """
-    return (points.abs() - half_size[..., None, :]).clamp_(min=0).norm(dim=-1)
-
-
 @dataclass(frozen=True)
 class HandBoxes:
-    """The hand's collision boxes, sorted by part."""
+    """The hand's collision boxes, part by part: every part has as many, the last ones repeated."""
 
     link: Tensor
-    """(num_boxes,) long link of each box."""
+    """(num_parts * width,) long link of each box."""
     position: Tensor
-    """(num_boxes, 3) [m] in the link frame."""
+    """(num_parts * width, 3) [m] in the link frame."""
     rotation: Tensor
-    """(num_boxes, 3, 3) from box to link frame."""
+    """(num_parts * width, 3, 3) from box to link frame."""
     half_size: Tensor
-    """(num_boxes, 3) [m]"""
-    parts: tuple[slice, ...]
-    """Boxes of each part."""
+    """(num_parts * width, 3, 1) [m]"""
+    width: int
+    """Boxes of a part."""
 
     @classmethod
     def of(
@@ -71,12 +62,9 @@ class HandBoxes:
             link_names: names in the order in which links are numbered.
             device: where the tensors live.
         """
-        boxes: list[tuple[str, Box]] = []
-        parts = []
-        for part in PARTS:
-            start = len(boxes)
-            boxes += [(link, b) for link, b in primitives[part] if isinstance(b, Box)]
-            parts.append(slice(start, len(boxes)))
+        by_part = [[(k, b) for k, b in primitives[part] if isinstance(b, Box)] for part in PARTS]
+        width = max(map(len, by_part))
+        boxes = [pair for own in by_part for pair in (own + own[-1:] * width)[:width]]
 
         def tensor(rows: list[Any]) -> Tensor:
             return torch.tensor(np.array(rows), dtype=torch.float32, device=device)
@@ -85,33 +73,120 @@ class HandBoxes:
             link=torch.tensor([link_names.index(link) for link, _ in boxes], device=device),
             position=tensor([box.xyz for _, box in boxes]),
             rotation=tensor([rotation(box.rpy) for _, box in boxes]),
-            half_size=tensor([np.asarray(box.size) / 2 for _, box in boxes]),
-            parts=tuple(parts),
+            half_size=tensor([np.asarray(box.size) / 2 for _, box in boxes])[:, :, None],
+            width=width,
+        )
+
+
+@dataclass(frozen=True)
+class ObjectSurfaces:
+    """Surfaces of all environments' objects, laid out for batched search (see `surface`)."""
+
+    centres: Tensor
+    """(num_envs, 3, num_cells) [m]"""
+    middles: Tensor
+    """(num_envs * num_cells, 3 * num_patches) [m] coordinate by coordinate."""
+    patches: Tensor
+    """(num_envs * num_cells * num_patches, 3, 3) [m] middle and half axes, one a column."""
+
+    @classmethod
+    def of(cls, surfaces: Sequence[Surface], device: torch.device) -> ObjectSurfaces:
+        """One surface for each environment."""
+        centres = np.stack([surface.centres for surface in surfaces])
+        patches = np.stack([surface.patches for surface in surfaces])
+        middles = patches[:, :, :, 0].swapaxes(2, 3).reshape(-1, 3 * patches.shape[2])
+        by_column = patches.reshape(-1, 3, 3).swapaxes(1, 2)
+        return cls(
+            *(
+                torch.from_numpy(np.ascontiguousarray(a)).to(device)
+                for a in (centres.swapaxes(1, 2), middles, by_column)
+            )
         )
 
 
 def part_distances(
-    link_poses: Tensor, boxes: HandBoxes, points: Tensor, obj_pose: Tensor
+    link_poses: Tensor, boxes: HandBoxes, surfaces: ObjectSurfaces, obj_pose: Tensor
 ) -> Tensor:
-    """Closest distance of each hand part to the object.
+    """Closest distance of each hand part to the object, 0 where they touch.
+
+    Every box is compared with every cell's centre; in the nearest cells of each part, with every
+    patch's middle; and the nearest patch is measured as the flat piece that it is.
 
     Args:
         link_poses: (num_envs, num_links, 7) [m, wxyz] world.
         boxes: the hand's boxes, numbered by the same links.
-        points: (num_envs, num_points, 3) [m] object surface, object frame.
+        surfaces: of the objects.
         obj_pose: (num_envs, 7) [m, wxyz] world.
 
     Returns:
         (num_envs, num_parts) [m]
     """
+    turn, shift = _object_to_boxes(link_poses, boxes, obj_pose)
+    num_envs, num_cells = len(turn), surfaces.centres.shape[2]
+    num_parts, num_patches = len(boxes.link) // boxes.width, surfaces.middles.shape[1] // 3
+    far = torch.baddbmm(shift.flatten(1, 2), turn.flatten(1, 2), surfaces.centres)
+    gaps = box_distance_squared(far.view(num_envs, -1, 3, num_cells), boxes.half_size)
+    gaps = gaps.view(num_envs * num_parts, -1)
+    near = gaps.topk(NEAREST_CELLS, largest=False, sorted=False).indices
+    row = torch.arange(num_envs * num_parts, device=near.device)[:, None]
+    box = near // num_cells + row * boxes.width  # Numbered through all environments.
+    cell = near % num_cells + row // num_parts * num_cells
+    turn, shift = turn.view(-1, 3, 3)[box], shift.view(-1, 3, 1)[box]
+    half_size = boxes.half_size[box % len(boxes.link)]
+    middles = surfaces.middles[cell].view(-1, 3, num_patches)
+    middles = torch.baddbmm(shift.flatten(0, 1), turn.flatten(0, 1), middles)
+    gaps = box_distance_squared(middles, half_size.flatten(0, 1)).view(len(near), -1)
+    best = gaps.argmin(1, keepdim=True)
+    which, patch = best // num_patches, best % num_patches
+    patches = surfaces.patches[cell.gather(1, which) * num_patches + patch][:, 0]
+    row, which = row[:, 0], which[:, 0]
+    in_box = turn[row, which] @ patches
+    in_box[:, :, :1] += shift[row, which]
+    return patch_distance(in_box, half_size[row, which]).view(num_envs, num_parts)
+
+
+def _object_to_boxes(
+    link_poses: Tensor, boxes: HandBoxes, obj_pose: Tensor
+) -> tuple[Tensor, Tensor]:
+    """Turn (num_envs, num_boxes, 3, 3) and shift (..., 3, 1): p_box = turn p_object + shift."""
     poses = link_poses[:, boxes.link]
     link_rotation = quat_to_matrix(poses[..., 3:])
-    rotation = link_rotation @ boxes.rotation
-    centre = poses[..., :3] + (link_rotation @ boxes.position[..., None])[..., 0]
-    obj_rotation = quat_to_matrix(obj_pose[:, 3:])[:, None]
-    # Object frame to box frame: p_box = R^T (R_obj p + t_obj - centre).
-    turn = rotation.transpose(-1, -2) @ obj_rotation
-    shift = rotation.transpose(-1, -2) @ (obj_pose[:, None, :3] - centre)[..., None]
-    in_box = points[:, None] @ turn.transpose(-1, -2) + shift.transpose(-1, -2)
-    nearest = box_distance(in_box, boxes.half_size).amin(-1)
-    return torch.stack([nearest[:, part].amin(1) for part in boxes.parts], 1)
+    centre = poses[..., :3, None] + link_rotation @ boxes.position[..., None]
+    to_box = (link_rotation @ boxes.rotation).transpose(-1, -2)
+    turn = to_box @ quat_to_matrix(obj_pose[:, 3:])[:, None]
+    return turn, to_box @ (obj_pose[:, None, :3, None] - centre)
+
+
+def box_distance_squared(points: Tensor, half_size: Tensor) -> Tensor:
+    """Squared distance of points to a box centred at the origin, 0 inside.
+
+    Args:
+        points: (..., 3, num_points) [m] in the box frame; overwritten.
+        half_size: (..., 3, 1) [m].
+
+    Returns:
+        (..., num_points) [m^2]
+    """
+    return points.abs_().sub_(half_size).clamp_(min=0).square_().sum(-2)
+
+
+def patch_distance(patches: Tensor, half_size: Tensor) -> Tensor:
+    """Distance of flat patches to a box centred at the origin, 0 where they touch.
+
+    The middle's nearest point of the box is projected onto the patch, and that point's distance is
+    taken: exact for flat faces against each other, else right to second order.
+
+    Args:
+        patches: (n, 3, 3) [m] middle, then two half axes, one a column, in the box frame.
+        half_size: (n, 3, 1) [m].
+
+    Returns:
+        (n,) [m]
+    """
+    middle, axes = patches[..., :1], patches[..., 1:]
+    to_box = torch.minimum(torch.maximum(middle, -half_size), half_size) - middle
+    along = (axes * to_box).sum(1, keepdim=True) / axes.square().sum(1, keepdim=True).clamp(
+        min=1e-12
+    )
+    on_patch = middle + (axes * along.clamp(-1, 1)).sum(2, keepdim=True)
+    return box_distance_squared(on_patch, half_size)[:, 0].sqrt()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,7 +24,6 @@ from maniskill_taskgrasp.episode import CONTROL_FREQ, LIFT_START, MAX_EPISODE_ST
 from maniskill_taskgrasp.errors import InputError, echo
 from maniskill_taskgrasp.tasks import rewards, scene
 from maniskill_taskgrasp.tasks.arm_ik import ArmIK
-from maniskill_taskgrasp.tasks.contacts import LinkContacts
 from maniskill_taskgrasp.tasks.cpu_batch import CpuBatchMixin
 from maniskill_taskgrasp.tasks.noise import draw_friction, draw_offsets, resolve_noise
 from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
@@ -33,14 +31,15 @@ from maniskill_taskgrasp.tasks.phases import phase_at
 from maniskill_taskgrasp.tasks.placement import Placement, place
 from maniskill_taskgrasp.tasks.planner import PregraspPlanner
 from maniskill_taskgrasp.tasks.plans import PlanBook, Plans
-from maniskill_taskgrasp.tasks.sensing import HandBoxes, part_distances, part_forces
+from maniskill_taskgrasp.tasks.senses import HandSenses, Reading
+from maniskill_taskgrasp.tasks.sensing import HandBoxes, ObjectSurfaces
+from maniskill_taskgrasp.tasks.surface import surface_of
 from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
 
 SIM_FREQ = 100  # [Hz]
 DISTANCES = ("exact", "noisy", "none")
 DISTANCE_ERROR = (0.003, 0.005)  # [m] size of the error that "noisy" draws once an episode.
 OBSERVATIONS = ("full", "paper")
-SURFACE_POINTS = 128  # Points of the object's surface that distances are taken to.
 FORCE_SCALE = 10.0  # [N] divides forces in the observation; distances are in decimetres.
 
 
@@ -70,18 +69,6 @@ def _resolve_objects(objects: str | Sequence[str]) -> list[str]:
     if not objects:
         raise InputError("objects must name at least one object, got an empty list")
     return list(objects)
-
-
-@dataclass(frozen=True)
-class Reading:
-    """What the hand feels at one instant."""
-
-    local_forces: Tensor
-    """(num_envs, num_links, 3) [N] force of the object on each hand link, link frame."""
-    forces: Tensor
-    """(num_envs, num_parts) [N]"""
-    distances: Tensor
-    """(num_envs, num_parts) [m]"""
 
 
 class TaskGraspEnv(CpuBatchMixin, BaseEnv):
@@ -187,6 +174,18 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             for link in self.agent.robot.links:
                 scene.set_friction(link._bodies[env], friction)
 
+    def _after_reconfigure(self, options: dict) -> None:
+        """Contact queries exist once the simulation runs."""
+        names = [link.name for link in self._hand_links]
+        self._senses = HandSenses(
+            self.scene,
+            self._hand_links,
+            self._surfaces.part_of_link,
+            self.obj,
+            HandBoxes.of(self.agent.sensed_primitives, names, self.device),
+            ObjectSurfaces.of([surface_of(p.model) for p in self.placements], self.device),
+        )
+
     # Planning
 
     def _prepare_planning(self) -> None:
@@ -194,7 +193,6 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         kinematics = ArticulationKinematics.of(agent.robot)
         self._hand_links = [link for links in agent.part_links.values() for link in links]
         link_names = [link.name for link in self._hand_links]
-        self._boxes = HandBoxes.of(agent.sensed_primitives, link_names, device)
         self._surfaces = ContactSurfaces(agent.hand, link_names, device)
         self.planner = PregraspPlanner(agent.hand, agent.part_primitives, kinematics)
         limits = agent.robot.get_qlimits()[0, agent.arm_indices]
@@ -203,7 +201,6 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         self._plan_book = PlanBook(self.planner, ik, device)
         n = self.num_envs
         tensor = lambda rows: torch.tensor(np.stack(rows), dtype=torch.float32, device=device)  # noqa: E731
-        self._points = tensor([p.model.surface_points(SURFACE_POINTS) for p in self.placements])
         self.nominal_pose = tensor(
             [np.concatenate([p.position, p.quat_wxyz]) for p in self.placements]
         )
@@ -219,7 +216,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         )
         fingers = [part not in ("palm", "thumb") for part in PARTS]
         self._finger_parts = torch.tensor(fingers, device=device)
-        self._contacts: LinkContacts | None = None
+        self._always = torch.ones(n, dtype=torch.bool, device=device)
 
     def _initialize_episode(self, env_idx: Tensor, options: dict) -> None:
         topologies = self._draw_topologies(env_idx, options)
@@ -279,34 +276,20 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         action = super()._step_action(action)
         if action is not None:
             self._last_action = action.reshape(self.num_envs, -1).clone()
-        self._reading = reading = self._read()
+        self._reading = reading = self._senses.read(self._always)
         speed = self.obj.linear_velocity.norm(dim=1)
         self.outcome.record(self._lift(), reading.local_forces, speed)
         return action
-
-    def _read(self) -> Reading:
-        """Forces and distances now; forces are zero where no physics step was taken yet."""
-        if self._contacts is None:
-            self._contacts = LinkContacts(self.scene, self._hand_links, self.obj)
-        link_poses = torch.stack([link.pose.raw_pose for link in self._hand_links], 1)
-        forces = self._contacts.forces()
-        forces = torch.where((self._elapsed_steps > 0)[:, None, None], forces, 0.0)
-        rotation = quat_to_matrix(link_poses[..., 3:])
-        return Reading(
-            local_forces=(rotation.transpose(-1, -2) @ forces[..., None])[..., 0],
-            forces=part_forces(forces, self._surfaces.part_of_link, len(PARTS)),
-            distances=part_distances(link_poses, self._boxes, self._points, self.obj.pose.raw_pose),
-        )
 
     @property
     def reading(self) -> Reading:
         """What the hand feels now."""
         if self._reading is None:
-            self._reading = self._read()
+            self._reading = self._senses.read(self._elapsed_steps > 0)
         return self._reading
 
     def _lift(self) -> Tensor:
-        return self.obj.pose.p[:, 2] - self._start_height
+        return self.reading.height - self._start_height
 
     def evaluate(self) -> dict[str, Tensor]:
         reading, lift = self.reading, self._lift()

@@ -1,0 +1,106 @@
+"""Reads off the simulation what the hand feels: link poses, contacts, distances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from mani_skill.envs.scene import ManiSkillScene
+from mani_skill.utils.structs import Actor
+from mani_skill.utils.structs.link import Link
+from torch import Tensor
+
+from maniskill_taskgrasp.agents.rotations import quat_to_matrix
+from maniskill_taskgrasp.tasks.contacts import LinkContacts
+from maniskill_taskgrasp.tasks.sensing import (
+    HandBoxes,
+    ObjectSurfaces,
+    part_distances,
+    part_forces,
+)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the hand feels at one instant, and where the object is."""
+
+    local_forces: Tensor
+    """(num_envs, num_links, 3) [N] force of the object on each hand link, link frame."""
+    forces: Tensor
+    """(num_envs, num_parts) [N]"""
+    distances: Tensor
+    """(num_envs, num_parts) [m]"""
+    height: Tensor
+    """(num_envs,) [m] of the object's origin in the world."""
+
+
+class LinkPoses:
+    """Poses of some links of every environment at once."""
+
+    def __init__(self, scene: ManiSkillScene, links: Sequence[Link]) -> None:
+        self._scene = scene
+        self._entities = [link._objs[0].entity for link in links]
+        if scene.gpu_sim_enabled:
+            self._rows = torch.stack([link._body_data_index for link in links], 1).long()
+
+    def __call__(self) -> Tensor:
+        """(num_envs, num_links, 7) [m, wxyz] world."""
+        scene = self._scene
+        if scene.gpu_sim_enabled:
+            batched = scene.px.cuda_rigid_body_data.torch()[self._rows, :7]
+            if scene.parallel_in_single_scene:
+                batched[..., :3] -= scene.scene_offsets[:, None]
+            return batched
+        # ManiSkill takes ten times as long to make a pose of each link.
+        poses = np.empty((1, len(self._entities), 7), dtype=np.float32)
+        for row, entity in zip(poses[0], self._entities, strict=True):
+            pose = entity.pose
+            row[:3], row[3:] = pose.p, pose.q
+        return torch.from_numpy(poses)
+
+
+class HandSenses:
+    """Sensors of one hand on the object of every environment."""
+
+    def __init__(
+        self,
+        scene: ManiSkillScene,
+        links: list[Link],
+        part_of_link: Tensor,
+        obj: Actor,
+        boxes: HandBoxes,
+        surfaces: ObjectSurfaces,
+    ) -> None:
+        """
+        Args:
+            links: of the hand; every tensor over links follows this order.
+            part_of_link: (num_links,) long index of the part that a link belongs to.
+            boxes: the hand's boxes, numbered by the same links.
+            surfaces: of the objects.
+        """
+        self._obj = obj
+        self._boxes = boxes
+        self._surfaces = surfaces
+        self._part_of_link = part_of_link
+        self._num_parts = len(boxes.link) // boxes.width
+        self._poses = LinkPoses(scene, links)
+        self._contacts = LinkContacts(scene, links, obj)
+
+    def read(self, stepped: Tensor) -> Reading:
+        """What is felt now.
+
+        Args:
+            stepped: (num_envs,) bool: a physics step was taken since the reset. Contacts are
+                unknown where it was not, and read as zero.
+        """
+        link_poses, obj_pose = self._poses(), self._obj.pose.raw_pose
+        forces = self._contacts.forces() * stepped[:, None, None]
+        rotation = quat_to_matrix(link_poses[..., 3:])
+        return Reading(
+            local_forces=(forces[..., None, :] @ rotation)[..., 0, :],
+            forces=part_forces(forces, self._part_of_link, self._num_parts),
+            distances=part_distances(link_poses, self._boxes, self._surfaces, obj_pose),
+            height=obj_pose[:, 2],
+        )
