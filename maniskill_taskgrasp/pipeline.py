@@ -95,7 +95,8 @@ class GraspOptions:
     topology: str | None = None
     """A topology that overrides the selector's choice."""
     policy: str = "constant"
-    """"constant", "learned" (the shipped policy) or a checkpoint of train/ppo.py."""
+    """"constant", "hover-rule" (moves the palm by the distances at hover, then closes), "learned"
+    (the shipped policy) or a checkpoint of train/ppo.py."""
     episodes: int = 1
     seed: int = 0
     noise: str = "paper"
@@ -232,10 +233,12 @@ def policy_maker(name: str) -> tuple[Callable[[Any], Any], dict[str, Any]]:
     """Maker of a policy for an environment, and the arguments the environment must have."""
     from functools import partial
 
-    from maniskill_taskgrasp.tasks.closing import ConstantClosing
+    from maniskill_taskgrasp.tasks.closing import ConstantClosing, HoverRule
 
     if name == "constant":
         return ConstantClosing, {}
+    if name == "hover-rule":
+        return HoverRule, {"control_mode": "pd_synergy_wrist"}
     from maniskill_taskgrasp.train.policy import load_policy, policy_env_kwargs
 
     path = _shipped_policy() if name == "learned" else Path(name)

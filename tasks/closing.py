@@ -27,3 +27,19 @@ class ConstantClosing:
         action = torch.zeros(env.num_envs, env.single_action_space.shape[0], device=env.device)
         action[:, self._num_palm :] = self._activation * closing[:, None]
         return action
+
+
+class HoverRule(ConstantClosing):
+    """Constant closing after the palm was moved by what the distances at hover tell.
+
+    The linear rule that a learned policy must be compared with (facts: grasping, section 7). It
+    needs `pd_synergy_wrist`, and `distance` other than "none" to see anything.
+    """
+
+    def __call__(self, obs: Tensor) -> Tensor:
+        env, action = self._env, super().__call__(obs)
+        x, y, yaw = env.shift.unbind(1)
+        wanted = torch.stack([x, y, torch.zeros_like(x), yaw], 1)
+        arm = env.agent.controller.controllers["arm"]
+        action[:, : self._num_palm] = arm.action_for(wanted)
+        return action

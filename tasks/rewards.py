@@ -13,6 +13,8 @@ NO_CONTACT = -1000.0  # Paper, section III.
 PAPER_SUCCESS = 1000.0  # Paper, section III.
 CONTACT_FORCE = 0.05  # [N] least force that counts as pressing.
 
+CENTRE_SCALE = 60.0  # [1/m] tanh slope: the term is 0.46 at 1 cm and 0.71 at 5 mm.
+YAW_LEVER = 0.04  # [m/rad] half the width of a grasp: what a turn moves at the fingertips.
 REACH_SCALE = 15.0  # [1/m] tanh slope: the term is 0.37 at 5 cm and 0.86 at 1 cm.
 FIRM_FORCE = 4.0  # [N] force of a part at which its grip term saturates.
 
@@ -21,6 +23,7 @@ FIRM_FORCE = 4.0  # [N] force of a part at which its grip term saturates.
 class RewardWeights:
     """Weights of the dense terms; the normalised reward divides by their sum."""
 
+    centre: float = 1.0
     reach: float = 0.5
     contact: float = 1.0
     balance: float = 1.0
@@ -46,6 +49,16 @@ def paper_reward(contact_count: Tensor, force: Tensor, success: Tensor) -> Tenso
     touching = CONTACT_BONUS * contact_count - FORCE_COST * force
     reward = torch.where(contact_count > 0, touching, torch.full_like(touching, NO_CONTACT))
     return reward + PAPER_SUCCESS * success
+
+
+def centre_term(shift: Tensor) -> Tensor:
+    """Nearness of the palm to where it would stand to the object as planned.
+
+    Args:
+        shift: (num_envs, 3) [m, m, rad] displacement (x, y, yaw) that the palm still lacks.
+    """
+    off = torch.cat([shift[:, :2], YAW_LEVER * shift[:, 2:]], 1)
+    return 1 - torch.tanh(CENTRE_SCALE * off.norm(dim=1))
 
 
 def reach_term(distances: Tensor, named: Tensor) -> Tensor:

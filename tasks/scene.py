@@ -46,30 +46,33 @@ def build_table(scene: ManiSkillScene) -> None:
     builder.build_static("table")
 
 
-def build_objects(scene: ManiSkillScene, placements: list[Placement]) -> Actor:
-    """One object and, where its presentation has one, its fixture for each environment."""
-    actors = []
+def build_objects(scene: ManiSkillScene, placements: list[Placement]) -> tuple[Actor, Actor]:
+    """One object and one fixture for each environment; the fixture of a bare table is empty.
+
+    Fixtures are kinematic: an episode's noise moves them with the object that they carry.
+    """
+    objects, fixtures = [], []
     for env, placement in enumerate(placements):
         builder = scene.create_actor_builder()
         builder.set_scene_idxs([env])
         add_object(builder, placement.model, visual=scene.can_render())
         builder.initial_pose = sapien.Pose(placement.position, placement.quat_wxyz)
-        actor = builder.build(f"object-{env}")
+        objects.append(builder.build(f"object-{env}"))
+        builder = scene.create_actor_builder()
+        builder.set_scene_idxs([env])
+        add_fixture(builder, placement.presentation, visual=scene.can_render())
+        builder.initial_pose = Pose.create(placement.fixture_pose)
+        fixtures.append(builder.build_kinematic(f"fixture-{env}"))
+    return _merged(scene, objects, "object"), _merged(scene, fixtures, "fixture")
+
+
+def _merged(scene: ManiSkillScene, actors: list[Actor], name: str) -> Actor:
+    """Actors of all environments as one, whose state stands for theirs."""
+    for actor in actors:
         scene.remove_from_state_dict_registry(actor)
-        actors.append(actor)
-        if placement.presentation.parts:
-            _build_fixture(scene, env, placement)
-    merged = Actor.merge(actors, "object")
+    merged = Actor.merge(actors, name)
     scene.add_to_state_dict_registry(merged)
     return merged
-
-
-def _build_fixture(scene: ManiSkillScene, env: int, placement: Placement) -> None:
-    builder = scene.create_actor_builder()
-    builder.set_scene_idxs([env])
-    add_fixture(builder, placement.presentation, visual=scene.can_render())
-    builder.initial_pose = Pose.create(placement.fixture_pose)
-    builder.build_static(f"fixture-{env}")
 
 
 def render_camera() -> CameraConfig:

@@ -14,23 +14,32 @@ from mani_skill.utils.structs.types import SceneConfig, SimConfig
 from torch import Tensor
 
 from maniskill_taskgrasp import ENV_ID
+from maniskill_taskgrasp.agents.controllers.palm_motion import PalmResidualController
 from maniskill_taskgrasp.agents.fidelity import ContactSurfaces, in_topology
 from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
-from maniskill_taskgrasp.agents.rotations import quat_multiply, quat_to_matrix, yaw_quat
 from maniskill_taskgrasp.agents.sawyer_ar10.agent import SawyerAR10
 from maniskill_taskgrasp.assets.objects import library
-from maniskill_taskgrasp.episode import CONTROL_FREQ, LIFT_START, MAX_EPISODE_STEPS, PHASES
+from maniskill_taskgrasp.episode import (
+    CONTROL_FREQ,
+    HOVER,
+    LIFT_START,
+    MAX_EPISODE_STEPS,
+    PHASE_ENDS,
+    PHASES,
+)
 from maniskill_taskgrasp.errors import InputError, echo
 from maniskill_taskgrasp.tasks import rewards, scene
 from maniskill_taskgrasp.tasks.arm_ik import ArmIK
 from maniskill_taskgrasp.tasks.cpu_batch import CpuBatchMixin
 from maniskill_taskgrasp.tasks.noise import draw_friction, draw_offsets, resolve_noise
+from maniskill_taskgrasp.tasks.offset import ERRORS, HoverSense, OffsetModel, displaced, following
 from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
 from maniskill_taskgrasp.tasks.phases import phase_at
 from maniskill_taskgrasp.tasks.placement import Placement, place
 from maniskill_taskgrasp.tasks.planner import PregraspPlanner
 from maniskill_taskgrasp.tasks.plans import PlanBook, Plans
+from maniskill_taskgrasp.tasks.pregrasp import palm_path
 from maniskill_taskgrasp.tasks.senses import HandSenses, Reading
 from maniskill_taskgrasp.tasks.sensing import HandBoxes, ObjectSurfaces
 from maniskill_taskgrasp.tasks.surface import surface_of
@@ -149,7 +158,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
     def _load_scene(self, options: dict) -> None:
         scene.build_table(self.scene)
         self.placements = [self._placement(env) for env in range(self.num_envs)]
-        self.obj = scene.build_objects(self.scene, self.placements)
+        self.obj, self.fixture = scene.build_objects(self.scene, self.placements)
         self._randomize_physics()
         self._prepare_planning()
 
@@ -198,15 +207,23 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         limits = agent.robot.get_qlimits()[0, agent.arm_indices]
         root = Pose.create(scene.ROBOT_POSE, device=device).raw_pose[0]
         ik = ArmIK(kinematics, agent.arm_indices, agent.hand.palm_frame, limits, root)
-        self._plan_book = PlanBook(self.planner, ik, device)
+        sense = None
+        if self._obs == "full" and self._distance in ERRORS:
+            boxes = HandBoxes.of(agent.sensed_primitives, link_names, device)
+            sense = HoverSense(agent, boxes, link_names, root, ERRORS[self._distance])
+        self._plan_book = PlanBook(self.planner, ik, device, sense)
         n = self.num_envs
         tensor = lambda rows: torch.tensor(np.stack(rows), dtype=torch.float32, device=device)  # noqa: E731
         self.nominal_pose = tensor(
             [np.concatenate([p.position, p.quat_wxyz]) for p in self.placements]
         )
+        self._fixture_pose = tensor([p.fixture_pose for p in self.placements])
         self._extents = tensor([p.extents for p in self.placements])
         self.topology_index = torch.zeros(n, dtype=torch.long, device=device)
         self.pregrasp = torch.zeros(n, 6, device=device)
+        self._hover = OffsetModel.blind(n, len(PARTS), device)
+        self.shift = torch.zeros(n, 3, device=device)
+        self._true_shift = torch.zeros(n, 3, device=device)
         self._start_height = torch.zeros(n, device=device)
         self._distance_error = torch.zeros(n, len(PARTS), device=device)
         self._last_action = torch.zeros(n, self.agent.single_action_space.shape[0], device=device)
@@ -225,6 +242,8 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         )
         plans = self._plan(env_idx, topologies, options)
         self.pregrasp[env_idx] = plans.pregrasp
+        self._hover.put(env_idx, plans.hover)
+        self.shift[env_idx] = 0.0
         self._place_robot(env_idx, plans)
         self._place_objects(env_idx)
         self._last_action[env_idx] = 0.0
@@ -256,12 +275,12 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         rng = self._batched_episode_rng[env_idx]
         draws = draw_offsets(self._noise, rng.uniform(-1, 1, size=3))
         offsets = torch.tensor(draws, dtype=torch.float32, device=self.device)
-        pose = self.nominal_pose[env_idx].clone()
-        turn = yaw_quat(offsets[:, 2])
-        pose[:, :3] = (quat_to_matrix(turn) @ pose[:, :3, None])[..., 0]
-        pose[:, :2] += offsets[:, :2]
-        pose[:, 3:] = quat_multiply(turn, pose[:, 3:])
+        centre = torch.zeros_like(offsets)  # Objects stand on the world's vertical axis.
+        pose = displaced(self.nominal_pose[env_idx], centre, offsets)
         self.obj.set_pose(Pose.create(pose))
+        self.fixture.set_pose(Pose.create(displaced(self._fixture_pose[env_idx], centre, offsets)))
+        palm = palm_path(self.pregrasp[env_idx], torch.zeros_like(offsets)).grasp
+        self._true_shift[env_idx] = following(offsets, palm)
         self._start_height[env_idx] = pose[:, 2]
         errors = rng.uniform(-1, 1, size=2 * len(PARTS)).reshape(-1, 2, len(PARTS))
         low, high = DISTANCE_ERROR
@@ -279,7 +298,21 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         self._reading = reading = self._senses.read(self._always)
         speed = self.obj.linear_velocity.norm(dim=1)
         self.outcome.record(self._lift(), reading.local_forces, speed)
+        self._estimate_shift()
         return action
+
+    def _estimate_shift(self) -> None:
+        """While the palm hovers, distances tell how far it must move to stand as planned."""
+        estimate = self._hover.estimate(self._sensed_distances(), self._palm_shift())
+        hovering = self._elapsed_steps < PHASE_ENDS[HOVER]
+        self.shift = torch.where(hovering[:, None], estimate, self.shift)
+
+    def _palm_shift(self) -> Tensor:
+        """(num_envs, 3) [m, m, rad] x, y and yaw by which the palm was moved off its path."""
+        arm = self.agent.controller.controllers["arm"]
+        if isinstance(arm, PalmResidualController):
+            return arm.residual[:, [0, 1, 3]]
+        return torch.zeros_like(self.shift)
 
     @property
     def reading(self) -> Reading:
@@ -334,6 +367,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             "topology": topologies[self.topology_index],
             "extents": self._extents,
             "pregrasp": self.pregrasp,
+            "shift": self.shift,
         }
 
     def _sensed_distances(self) -> Tensor:
@@ -361,6 +395,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         forces, distances = info["part_forces"], self.reading.distances
         lift = rewards.lift_term(info["lift"], LIFT_HEIGHT)
         return {
+            "centre": rewards.centre_term(self._true_shift - self._palm_shift()),
             "reach": rewards.reach_term(distances, named),
             "contact": rewards.contact_term(forces, named),
             "balance": rewards.balance_term(forces, opposing, named & self._finger_parts),

@@ -109,6 +109,11 @@ class PalmResidualController(ArmPathController):
         self.residual += torch.where((self.step < self.open_steps)[:, None], step, 0.0)
         return self._displaced(self.waypoint())
 
+    def action_for(self, displacement: Tensor) -> Tensor:
+        """(num_envs, 4) action that names a displacement (num_envs, 4) [m, m, m, rad]."""
+        side = torch.where(displacement < 0, -self._lower, self._upper)
+        return (displacement / side).clamp(-1, 1)
+
     def _displaced(self, qpos: Tensor) -> Tensor:
         """Arm posture (num_envs, num_joints) [rad] whose palm is off that of `qpos`."""
         pose, jacobian = self._palm(qpos)
