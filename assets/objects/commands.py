@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -92,40 +92,45 @@ def import_objects(
     Args:
         units: "m", "cm" or "mm" of the files; None infers them.
         mass: [kg] of each object; None guesses from the volume.
-        progress: show a bar on stderr for more than one.
+        progress: show a bar for more than one on a terminal.
 
     Returns:
         A summary and the notes of each imported object; of a file in a folder that does not do,
         its name and the reason under "error".
 
     Raises:
-        InputError: the path does not exist, holds nothing to import, or is a file that does not do.
+        InputError: the path does not exist, holds nothing to import or nothing that does, or is a
+            file that does not do.
     """
+    from tqdm import tqdm
+
     source = Path(path).expanduser()
     if source.is_file() and source.suffix.lower() != SUFFIX:
         job = partial(import_file, source, units, mass)
         return [_import(plain_name(source), job)]
-    jobs: Iterable[Job] = _jobs(source, units, mass)
+    jobs = _jobs(source, units, mass)
     if not jobs:
         raise InputError(f"{echo(path)} holds no mesh files")
-    if progress:
-        from tqdm import tqdm
-
-        jobs = tqdm(jobs, desc="importing", unit="mesh")
-    return [_attempt(label, name, job) for label, name, job in jobs]
+    # None: no bar where stderr is no terminal, where it would stand beside the one error line.
+    bar = tqdm(jobs, desc="importing", unit="mesh", leave=False, disable=None if progress else True)
+    results = [_attempt(label, name, job) for label, name, job in bar]
+    if all("error" in result for result in results):
+        reason = results[0]["error"]
+        raise InputError(f"none of the {len(results)} meshes in {echo(path)} does: first, {reason}")
+    return results
 
 
 def _jobs(source: Path, units: str | None, mass: float | None) -> list[Job]:
     """What is to be imported, under names that differ."""
     if not source.exists():
-        raise InputError(f"no file or folder {echo(source)}")
+        raise InputError(f"no file or folder {echo(source.name)} in {echo(source.parent)}")
     jobs: list[Job] = []
     for archive in sorted(source.rglob(f"*{SUFFIX}")) if source.is_dir() else [source]:
         for entry in graspable_entries(archive):
             label = f"{archive.name}: {entry.name}"
             jobs.append((label, entry.name, partial(import_entry, archive, entry)))
     for file in mesh_files(source) if source.is_dir() else ():
-        name = plain_name(file.relative_to(source).with_suffix(""))
+        name = plain_name(file)
         jobs.append((str(file), name, partial(import_file, file, units, mass, name)))
     seen: Counter[str] = Counter()
     unique = []

@@ -40,7 +40,8 @@ def mend(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
     mesh = thinned(mesh, MAX_DRAWN_FACES)
     if not mesh.is_watertight:
         mesh.fill_holes()
-    mesh.fix_normals()
+    with np.errstate(divide="ignore", invalid="ignore"):  # An open mesh may enclose no volume yet.
+        mesh.fix_normals()
     return mesh
 
 

@@ -61,6 +61,8 @@ def object_from_mesh(
     """
     notes = [raw.note]
     mesh = mend(raw.mesh)
+    if len(mesh.faces) < 4:
+        raise InputError(f"{echo(name)} has too few faces with an area to enclose anything")
     placing = _object_frame(mesh)
     mesh.apply_transform(placing)
     drawn = thinned(raw.mesh.copy(), MAX_DRAWN_FACES)
@@ -162,9 +164,7 @@ def _corners(parts: Sequence[Part]) -> Array:
 def plain_name(path: Path) -> str:
     """Object name of a file: its stem in lower case, words apart."""
     words = re.sub(r"[^0-9a-z-]+", " ", path.stem.lower()).strip(" -")
-    if not words:
-        raise InputError(f"no object name can be made of {echo(path.name)}: letters or digits do")
-    return words[:MAX_NAME]
+    return words[:MAX_NAME] or "unnamed"
 
 
 def mesh_files(folder: Path) -> Iterator[Path]:

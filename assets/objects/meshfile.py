@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from maniskill_taskgrasp.assets.objects.meshheader import promise
 from maniskill_taskgrasp.errors import InputError, echo
 
 if TYPE_CHECKING:
@@ -45,7 +47,7 @@ def read_mesh(path: Path, units: str | None = None) -> RawMesh:
     """
     if units is not None and units not in UNITS:
         raise InputError(f"unknown units {echo(units)}: m, cm or mm would do")
-    _check_file(path)
+    check_file(path)
     mesh = _load(path)
     _check_geometry(mesh, path)
     longest = float(mesh.extents.max())
@@ -56,15 +58,17 @@ def read_mesh(path: Path, units: str | None = None) -> RawMesh:
     size = longest * UNITS[units]
     if not MIN_SIZE <= size <= MAX_SIZE:
         raise InputError(
-            f"{echo(path)} is {_readable(size)} long ({note}): from {_readable(MIN_SIZE)} to "
+            f"{echo(path.name)} is {_readable(size)} long ({note}): from {_readable(MIN_SIZE)} to "
             f"{_readable(MAX_SIZE)} would do; give --units m, cm or mm if they were misread"
         )
-    mesh.apply_scale(UNITS[units])
-    if float(mesh.extents.min()) < MIN_THICKNESS:
+    thin = _thickness(mesh.vertices) * UNITS[units]
+    if thin < MIN_THICKNESS:
         raise InputError(
-            f"{echo(path)} is {_readable(float(mesh.extents.min()))} thick: a solid of at least "
+            f"{echo(path.name)} is {_readable(thin)} thick: a solid of at least "
             f"{_readable(MIN_THICKNESS)} would do"
         )
+    mesh.apply_scale(UNITS[units])
+    mesh.merge_vertices()
     return RawMesh(mesh, units, note)
 
 
@@ -76,34 +80,55 @@ def infer_units(longest: float, suffix: str) -> tuple[str, str]:
     return units, f"units {units} inferred from a longest extent of {longest:.4g}"
 
 
-def _check_file(path: Path) -> None:
+def check_file(path: Path) -> None:
+    """Refuse without reading it what is no mesh file, or one cut short or too large.
+
+    Raises:
+        InputError: one of these.
+    """
     if not path.is_file():
-        raise InputError(f"no mesh file {echo(path)}")
+        raise InputError(f"no mesh file {echo(path.name)} in {echo(path.parent)}")
+    shown = echo(path.name)
     if path.suffix.lower() not in SUFFIXES:
-        raise InputError(f"{echo(path)} is no mesh file: {', '.join(SUFFIXES)} would do")
+        raise InputError(f"{shown} is no mesh file: {', '.join(SUFFIXES)} would do")
     size = path.stat().st_size
     if size == 0:
-        raise InputError(f"{echo(path)} is empty")
+        raise InputError(f"{shown} is empty")
+    promised = promise(path)
+    if promised is not None and promised.least_bytes > size:
+        raise InputError(
+            f"{shown} is cut short or no mesh: its header promises {promised.faces:,} faces, so "
+            f"{promised.least_bytes:,} bytes at least, and {size:,} are there"
+        )
+    if promised is not None and promised.faces > MAX_FACES:
+        raise _too_many(path, promised.faces)
     if size > MAX_BYTES:
         raise InputError(
-            f"{echo(path)} has {size / 1e6:.0f} MB: at most {MAX_BYTES / 1e6:.0f} MB would do; "
+            f"{shown} has {size / 1e6:.0f} MB: at most {MAX_BYTES / 1e6:.0f} MB would do; "
             "simplify it first"
         )
+
+
+def _too_many(path: Path, faces: int) -> InputError:
+    return InputError(
+        f"{echo(path.name)} has {faces:,} faces: at most {MAX_FACES:,} would do; simplify it first"
+    )
 
 
 def _load(path: Path) -> trimesh.Trimesh:
     import trimesh
 
     try:
-        mesh = coloured_mesh(trimesh.load_scene(path))
+        # Unprocessed: trimesh would drop vertices that are no numbers without a word.
+        mesh = coloured_mesh(trimesh.load_scene(path, process=False))
     except MemoryError:
-        raise
+        raise InputError(f"{echo(path.name)} needs more memory than there is") from None
     except Exception as error:  # Readers of damaged files raise anything.
         first = str(error).strip().splitlines()[:1]
         detail = f" ({first[0][:80]})" if first else ""
-        raise InputError(f"cannot read {echo(path)} as a mesh{detail}") from None
+        raise InputError(f"cannot read {echo(path.name)} as a mesh{detail}") from None
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
-        raise InputError(f"{echo(path)} holds no triangles")
+        raise InputError(f"{echo(path.name)} holds no triangles")
     return mesh
 
 
@@ -133,18 +158,28 @@ def _main_colour(geometry: Any) -> Any:
 
 
 def _check_geometry(mesh: trimesh.Trimesh, path: Path) -> None:
+    shown = echo(path.name)
     if len(mesh.faces) > MAX_FACES:
-        raise InputError(
-            f"{echo(path)} has {len(mesh.faces):,} faces: at most {MAX_FACES:,} would do; "
-            "simplify it first"
-        )
-    if not np.isfinite(mesh.vertices).all():
-        raise InputError(f"{echo(path)} has vertices that are not finite numbers")
+        raise _too_many(path, len(mesh.faces))
     if mesh.faces.max() >= len(mesh.vertices) or mesh.faces.min() < 0:
-        raise InputError(f"{echo(path)} has faces of vertices that do not exist")
-    extents = np.ptp(mesh.vertices[np.unique(mesh.faces)], axis=0)
-    if extents.max() <= 0 or extents.min() <= 1e-6 * extents.max():
-        raise InputError(f"{echo(path)} is flat: a solid would do")
+        raise InputError(f"{shown} has faces of vertices that do not exist")
+    mesh.remove_unreferenced_vertices()
+    with np.errstate(over="ignore", invalid="ignore"):
+        longest = np.ptp(mesh.vertices, axis=0).max()
+    if not np.isfinite(longest):
+        raise InputError(f"{shown} has vertices that are not finite numbers")
+    if longest <= 0 or _thickness(mesh.vertices) <= 1e-6 * longest:
+        raise InputError(f"{shown} is flat: a solid would do")
+    if mesh.area <= 0:
+        raise InputError(f"{shown} has no face with an area: a solid would do")
+
+
+def _thickness(points: NDArray[np.float64]) -> float:
+    """Least extent of points (n, 3), along an axis of the file or across the best plane."""
+    extents = np.ptp(points, axis=0)
+    unit = (points - points.mean(axis=0)) / extents.max()
+    normal = np.linalg.eigh(unit.T @ unit)[1][:, 0]
+    return float(min(extents.min(), np.ptp(unit @ normal) * extents.max()))
 
 
 def _readable(metres: float) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from maniskill_taskgrasp.assets.objects.folders import cache_folder, user_objects_folder
+from maniskill_taskgrasp.assets.objects.meshfile import check_file
 from maniskill_taskgrasp.assets.objects.model import ObjectModel
 from maniskill_taskgrasp.assets.objects.store import (
     Json,
@@ -57,8 +58,7 @@ def cached_import(path: Path, units: str | None = None, mass: float | None = Non
     """
     from maniskill_taskgrasp.assets.objects.importer import fingerprint, import_file
 
-    if not path.is_file():
-        raise InputError(f"no mesh file {echo(path)}")
+    check_file(path)
     stored = cache_folder() / "imports" / f"{fingerprint(path, units, mass)}.json"
     if not stored.exists():
         model, notes = import_file(path, units, mass)
