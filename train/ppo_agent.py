@@ -134,3 +134,7 @@ class ActionScaler:
     def __call__(self, action: Tensor) -> Tensor:
         """(batch, action_dim) network action -> task action, clamped to the box."""
         return self._middle + self._half_range * action.clamp(-self._limit, self._limit)
+
+    def inverse(self, action: Tensor) -> Tensor:
+        """(batch, action_dim) task action -> network action that means it."""
+        return (action - self._middle) / self._half_range

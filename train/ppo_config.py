@@ -124,6 +124,12 @@ class PPOConfig:
     """The task's reward mode; by default the task's first."""
     sim_backend: str = "auto"
     """ManiSkill's simulation back end; auto: CUDA where there is one, else the CPU."""
+    teacher: Literal["constant", "hover-rule"] | None = None
+    """TaskGrasp: rule that the network imitates before PPO starts (`grasp --policy` has them)."""
+    teacher_lessons: int = 8
+    """Rollouts of imitation."""
+    teacher_logstd: float = -1.6
+    """Log deviation of the actions, in the network's range, during imitation and after it."""
     preset: Preset | None = None
     """paper: the settings of the TaskGrasp paper; flags given beside it win."""
     resume: str | None = None
@@ -225,6 +231,13 @@ def _positive(config: PPOConfig, *names: str) -> None:
             raise InputError(f"{flag} must be a number greater than 0, got {value}")
 
 
+def _check_teacher(config: PPOConfig) -> None:
+    if config.teacher is not None and not is_task_grasp(config.env_id):
+        raise InputError(f"--teacher {config.teacher} is for {TASK_GRASP}, not {config.env_id}")
+    if config.teacher == "hover-rule" and config.control_mode != "pd_synergy_wrist":
+        raise InputError("--teacher hover-rule moves the palm: add --control-mode pd_synergy_wrist")
+
+
 def check_config(config: PPOConfig, world_size: int) -> None:
     """Refuse settings that cannot run, before anything is built.
 
@@ -234,7 +247,7 @@ def check_config(config: PPOConfig, world_size: int) -> None:
     _positive(config, "total_timesteps", "num_envs", "num_eval_envs", "num_steps", "num_eval_steps")
     _positive(config, "learning_rate", "num_minibatches", "update_epochs", "clip_coef", "target_kl")
     _positive(config, "max_grad_norm", "reward_scale", "eval_freq", "save_freq", "eval_episodes")
-    _positive(config, "torch_threads", "save_train_video_freq")
+    _positive(config, "torch_threads", "save_train_video_freq", "teacher_lessons")
     for name in ("gamma", "gae_lambda"):
         if not 0.0 <= getattr(config, name) <= 1.0:
             flag = "--" + name.replace("_", "-")
@@ -256,6 +269,7 @@ def check_config(config: PPOConfig, world_size: int) -> None:
         )
     if config.evaluate and config.checkpoint is None:
         raise InputError("--evaluate needs --checkpoint FILE, the policy to evaluate")
+    _check_teacher(config)
     if config.track and importlib.util.find_spec("wandb") is None:
         raise InputError("--track needs wandb: pip install wandb, or leave --track out")
     if config.cudagraphs and not config.compile:

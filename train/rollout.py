@@ -10,7 +10,7 @@ import torch
 from gymnasium import spaces
 from torch import Tensor
 
-from maniskill_taskgrasp.train.ppo_agent import ActionScaler, Agent, ObsNormalizer
+from maniskill_taskgrasp.train.ppo_agent import ActionScaler, ObsNormalizer
 
 
 class VectorEnv(Protocol):
@@ -34,6 +34,13 @@ class VectorEnv(Protocol):
 
     def close(self) -> None:
         """Free the simulation."""
+
+
+class Actor(Protocol):
+    """Who decides: `Agent`, or a teacher that stands in for it."""
+
+    def act(self, obs: Tensor) -> tuple[Tensor, Tensor]:
+        """Actions and their log-probabilities for normalised observations."""
 
 
 @dataclass
@@ -68,7 +75,7 @@ def episode_metrics(info: dict[str, Any], ended: Tensor) -> dict[str, list[float
 @torch.no_grad()
 def collect(
     envs: VectorEnv,
-    agent: Agent,
+    agent: Actor,
     normalizer: ObsNormalizer,
     scaler: ActionScaler,
     obs: Tensor,

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from maniskill_taskgrasp.pipeline import policy_maker
 from maniskill_taskgrasp.train import environments
 from maniskill_taskgrasp.train.checkpoint import (
     FINAL_NAME,
@@ -30,6 +31,7 @@ from maniskill_taskgrasp.train.ppo_config import PPOConfig
 from maniskill_taskgrasp.train.ppo_update import make_batch, update
 from maniskill_taskgrasp.train.rollout import Rollout, VectorEnv, collect
 from maniskill_taskgrasp.train.run_log import RunLog, note
+from maniskill_taskgrasp.train.teaching import teach
 
 ADAM_EPS = 1e-5
 WORKER_STREAM = 2  # Seeds of the generators that draw actions and minibatches.
@@ -140,6 +142,7 @@ class Trainer:
         session_start, earlier_seconds = time.perf_counter(), self.seconds
         last = self.config.num_iterations
         if self.iteration == 0:
+            self._teach()
             self._evaluate_and_log(log)
             self._save(checkpoint_name(0))
         obs = self._rebuild()
@@ -166,6 +169,26 @@ class Trainer:
         if log is not None:
             log.close()
         return evaluation
+
+    def _teach(self) -> None:
+        """Let the network imitate the teacher before anything else, where there is one."""
+        if self.config.teacher is None:
+            return
+        rule = policy_maker(self.config.teacher)[0](self.envs)
+        difference = teach(
+            self.envs,
+            self.agent,
+            self.normalizer,
+            self.scaler,
+            rule,
+            self._rebuild(),
+            self.config,
+        )
+        # Every process has seen other episodes: all go on with what the first one learned.
+        state = {"agent": self.agent.state_dict(), "normalizer": self.normalizer.state_dict()}
+        self.load_weights(self.processes.gather(state)[0])
+        if self.processes.is_main:
+            note(f"imitates {self.config.teacher}: mean squared difference {difference:.3g}")
 
     def _rebuild(self) -> torch.Tensor:
         """Rebuild the scene and restart every episode with seeds of this iteration.
