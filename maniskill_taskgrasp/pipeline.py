@@ -229,20 +229,31 @@ def choose_topology(selection: Selection, wanted: str | None) -> Topology:
     )
 
 
-def policy_maker(name: str) -> tuple[Callable[[Any], Any], dict[str, Any]]:
-    """Maker of a policy for an environment, and the arguments the environment must have."""
+def policy_maker(
+    name: str, distance: str | None = None
+) -> tuple[Callable[[Any], Any], dict[str, Any]]:
+    """Maker of a policy for an environment, and the arguments the environment must have.
+
+    Args:
+        name: "constant", "hover-rule", "learned" or a checkpoint of train/ppo.py.
+        distance: what the distances shall know; None leaves it to the policy.
+
+    Raises:
+        InputError: there is no such policy.
+    """
+    given = {} if distance is None else {"distance": distance}
     from functools import partial
 
     from maniskill_taskgrasp.tasks.closing import ConstantClosing, HoverRule
 
     if name == "constant":
-        return ConstantClosing, {}
+        return ConstantClosing, given
     if name == "hover-rule":
-        return HoverRule, {"control_mode": "pd_synergy_wrist"}
+        return HoverRule, {"control_mode": "pd_synergy_wrist"} | given
     from maniskill_taskgrasp.train.policy import load_policy, policy_env_kwargs
 
-    path = _shipped_policy() if name == "learned" else Path(name)
-    return partial(load_policy, path), policy_env_kwargs(path)
+    path = _shipped_policy(distance) if name == "learned" else Path(name)
+    return partial(load_policy, path), policy_env_kwargs(path) | given
 
 
 def _search(source: str, topology: Topology, options: GraspOptions) -> FoundGrasp | None:
@@ -255,13 +266,12 @@ def _search(source: str, topology: Topology, options: GraspOptions) -> FoundGras
     return find_grasp(source, topology, options.presentation, budget)
 
 
-def _shipped_policy() -> Path:
+def _shipped_policy(distance: str | None) -> Path:
+    """The policy that feels distances, or the one that has touch alone."""
     from importlib.resources import files
 
-    path = Path(str(files("maniskill_taskgrasp.assets").joinpath("checkpoints/policy.pt")))
-    if not path.exists():
-        raise InputError("no learned policy is shipped yet; use --policy constant or a checkpoint")
-    return path
+    name = "policy_touch.pt" if distance == "none" else "policy_distance.pt"
+    return Path(str(files("maniskill_taskgrasp.assets").joinpath(f"checkpoints/{name}")))
 
 
 def _affordance(name: str) -> Affordance:

@@ -107,9 +107,9 @@ def evaluate(config: EvaluateConfig) -> Json:
     Raises:
         InputError: something that was named does not exist, or the folder holds other results.
     """
-    make_policy, env_kwargs = policy_maker(config.policy)
+    make_policy, env_kwargs = policy_maker(config.policy, config.distance)
     if config.policy == "constant":
-        env_kwargs = {"obs": "paper"}  # It looks at the clock alone; this costs least.
+        env_kwargs |= {"obs": "paper"}  # It looks at the clock alone; this costs least.
     table, offers = Table.open(config), list_offers(config)
     todo = [offer for offer in offers if offer.offered and offer.key not in table.cells]
     conditions = Conditions(

@@ -31,7 +31,7 @@ def photograph(cell: Json, config: Json, seed: int) -> tuple[bytes, str]:
     """
     from maniskill_taskgrasp.pipeline import policy_maker
 
-    make_policy, env_kwargs = policy_maker(config["policy"])
+    make_policy, env_kwargs = policy_maker(config["policy"], config["distance"])
     env: Any = gym.make(
         "TaskGrasp-v0",
         objects=[cell["source"]],
