@@ -85,15 +85,3 @@ class Outcome:
         failure[~self.reachable & over] = FAILURES.index("unreachable")
         failure[self.success] = FAILURES.index("none")
         return failure
-
-    def state(self) -> dict[str, Tensor]:
-        """Everything the episode remembers, as 2-D float tensors."""
-        return {
-            name: value.flatten(1) if value.ndim > 1 else value[:, None].float()
-            for name, value in vars(self).items()
-        }
-
-    def restore(self, state: dict[str, Tensor], env_idx: Tensor) -> None:
-        """Take back what `state` gave, for some environments."""
-        for name, field in vars(self).items():
-            field[env_idx] = state[name].view(-1, *field.shape[1:]).to(field)

@@ -88,18 +88,22 @@ class HandSenses:
         self._poses = LinkPoses(scene, links)
         self._contacts = LinkContacts(scene, links, obj)
 
-    def read(self, stepped: Tensor) -> Reading:
+    def read(self, local_forces: Tensor | None = None) -> Reading:
         """What is felt now.
 
         Args:
-            stepped: (num_envs,) bool: a physics step was taken since the reset. Contacts are
-                unknown where it was not, and read as zero.
+            local_forces: (num_envs, num_links, 3) [N] link frame, in place of the contacts of the
+                last physics step: those are void once an environment was put into another state.
         """
         link_poses, obj_pose = self._poses(), self._obj.pose.raw_pose
-        forces = self._contacts.forces() * stepped[:, None, None]
         rotation = quat_to_matrix(link_poses[..., 3:])
+        if local_forces is None:
+            forces = self._contacts.forces()
+            local_forces = (forces[..., None, :] @ rotation)[..., 0, :]
+        else:
+            forces = (rotation @ local_forces[..., None])[..., 0]
         return Reading(
-            local_forces=(forces[..., None, :] @ rotation)[..., 0, :],
+            local_forces=local_forces,
             forces=part_forces(forces, self._part_of_link, self._num_parts),
             distances=part_distances(link_poses, self._boxes, self._surfaces, obj_pose),
             height=obj_pose[:, 2],

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import torch
 from mani_skill.envs.sapien_env import BaseEnv
+from mani_skill.utils import common
 from mani_skill.utils.registration import REGISTERED_ENVS, register
 from mani_skill.utils.structs.pose import Pose
 from mani_skill.utils.structs.types import SceneConfig, SimConfig
@@ -32,6 +33,7 @@ from maniskill_taskgrasp.errors import InputError, echo
 from maniskill_taskgrasp.tasks import rewards, scene
 from maniskill_taskgrasp.tasks.arm_ik import ArmIK
 from maniskill_taskgrasp.tasks.cpu_batch import CpuBatchMixin
+from maniskill_taskgrasp.tasks.episode_state import from_rows, to_rows, unflattened
 from maniskill_taskgrasp.tasks.noise import draw_friction, draw_offsets, resolve_noise
 from maniskill_taskgrasp.tasks.offset import ERRORS, HoverSense, OffsetModel, displaced, following
 from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
@@ -49,7 +51,18 @@ SIM_FREQ = 100  # [Hz]
 DISTANCES = ("exact", "noisy", "none")
 DISTANCE_ERROR = (0.003, 0.005)  # [m] size of the error that "noisy" draws once an episode.
 OBSERVATIONS = ("full", "paper")
-FORCE_SCALE = 10.0  # [N] divides forces in the observation; distances are in decimetres.
+EPISODE_FIELDS = (
+    "_elapsed_steps",
+    "topology_index",
+    "pregrasp",
+    "shift",
+    "_true_shift",
+    "_start_height",
+    "_distance_error",
+    "_last_action",
+    "_touch",
+)
+"""What the task remembers of an episode beside `Outcome` and `OffsetModel`."""
 
 
 def _one_of(name: str, value: str, allowed: Sequence[str]) -> str:
@@ -233,7 +246,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         )
         fingers = [part not in ("palm", "thumb") for part in PARTS]
         self._finger_parts = torch.tensor(fingers, device=device)
-        self._always = torch.ones(n, dtype=torch.bool, device=device)
+        self._touch = torch.zeros(n, len(link_names), 3, device=device)
 
     def _initialize_episode(self, env_idx: Tensor, options: dict) -> None:
         topologies = self._draw_topologies(env_idx, options)
@@ -247,6 +260,8 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         self._place_robot(env_idx, plans)
         self._place_objects(env_idx)
         self._last_action[env_idx] = 0.0
+        self._touch = self._touch.clone()  # Readings that were handed out keep theirs.
+        self._touch[env_idx] = 0.0
         self.outcome.reset(env_idx, plans.reachable)
         self._reading = None
 
@@ -289,13 +304,44 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             np.sign(errors[:, 1]) * size, dtype=torch.float32, device=self.device
         )
 
+    # State
+
+    def _episode(self) -> dict[str, Tensor]:
+        """Everything that the task remembers of the running episodes, each (num_envs, ...)."""
+        own = {name.removeprefix("_"): getattr(self, name) for name in EPISODE_FIELDS}
+        hover = {f"hover_{name}": field for name, field in vars(self._hover).items()}
+        return {**own, **hover, **vars(self.outcome)}
+
+    def get_state_dict(self) -> dict[str, Any]:
+        """ManiSkill's state, with what controllers and task remember of the episode."""
+        return {**super().get_state_dict(), "task": to_rows(self._episode())}
+
+    def set_state_dict(self, state: dict, env_idx: Tensor | None = None) -> None:
+        """Take back what `get_state_dict` gave; a state without "task" moves bodies only."""
+        super().set_state_dict(state, env_idx)
+        envs = torch.arange(self.num_envs, device=self.device) if env_idx is None else env_idx
+        if "controller" in state:
+            memory = common.to_tensor(state["controller"], device=self.device)
+            rows = {
+                uid: {k: torch.atleast_2d(v) for k, v in own.items()} for uid, own in memory.items()
+            }
+            self.agent.set_controller_state(rows, envs)
+        if "task" in state:
+            from_rows(self._episode(), state["task"], envs)
+        self._reading = None
+
+    def set_state(self, state: Any, env_idx: Tensor | None = None) -> None:
+        """The same for what `get_state` gave."""
+        self.set_state_dict(unflattened(state, self.get_state_dict()), env_idx)
+
     # Sensing
 
     def _step_action(self, action: Any) -> Any:
         action = super()._step_action(action)
         if action is not None:
             self._last_action = action.reshape(self.num_envs, -1).clone()
-        self._reading = reading = self._senses.read(self._always)
+        self._reading = reading = self._senses.read()
+        self._touch = reading.local_forces
         speed = self.obj.linear_velocity.norm(dim=1)
         self.outcome.record(self._lift(), reading.local_forces, speed)
         self._estimate_shift()
@@ -318,7 +364,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
     def reading(self) -> Reading:
         """What the hand feels now."""
         if self._reading is None:
-            self._reading = self._senses.read(self._elapsed_steps > 0)
+            self._reading = self._senses.read(self._touch)
         return self._reading
 
     def _lift(self) -> Tensor:
