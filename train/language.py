@@ -23,10 +23,13 @@ from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.actions import NO_ACTION
 from maniskill_taskgrasp.language.encoder import load_encoder
 from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, Phrase, load_lexicon
+from maniskill_taskgrasp.language.objects import PHONING
 from maniskill_taskgrasp.language.verbs import base_of
 from maniskill_taskgrasp.language.words import word_list
 
 DEFAULT_OUT = Path(__file__).resolve().parent.parent / "assets" / "checkpoints" / "language.npz"
+PEOPLE = word_list("people")
+"""Whom people phone."""
 TARGETS = word_list("targets")
 """Things that tools are used on; the table's own objects are what is held."""
 OFF_TOPIC_VERBS = word_list("off_topic_verbs")
@@ -73,7 +76,7 @@ def fill(phrase: Phrase, rng: random.Random) -> str:
     all_names = sorted(load_knowledge().objects)
     used = objects_of(phrase.action)
     held = rng.choice(used) if used and rng.random() < 0.7 else rng.choice(all_names)
-    target = rng.choice(TARGETS)
+    target = rng.choice(PEOPLE if phrase.action in PHONING else TARGETS)
     noun = rng.choice(sorted(phrase.nouns)) if phrase.nouns else ""
     verb = phrase.text
     tool = phrase.action in TOOL_ACTIONS

@@ -87,6 +87,8 @@ def _verb_tokens(doc: Doc) -> list[tuple[Token, str]]:
     found = []
     in_name = {i for m in doc._.mentions if m.end - m.start > 1 for i in range(m.start, m.end)}
     for token in doc:
+        if _is_nominal(token):
+            continue
         framed = is_framed(token) and token.lower_ not in {"you", "should", "not"} and token.i < 4
         if not framed and (token.i in in_name or token.dep_ in {"amod", "compound"}):
             continue
@@ -102,6 +104,12 @@ def _verb_tokens(doc: Doc) -> list[tuple[Token, str]]:
         if framed or verbal or gerund or (participle and token.lower_.endswith(("ed", "en"))):
             found.append((token, base or token.lemma_.lower()))
     return found
+
+
+def _is_nominal(token: Token) -> bool:
+    """Whether a word parsed as a verb is the noun of an article: "a quarter turn"."""
+    before = [t.lower_ for t in token.doc[max(0, token.i - 2) : token.i]]
+    return token.dep_ == "dobj" and token.tag_ == "VB" and bool({"a", "an"} & set(before))
 
 
 def _is_gerund(token: Token) -> bool:

@@ -94,6 +94,12 @@ def is_passive(verb: Token) -> bool:
     return (needs and gerund) or got
 
 
+def is_undone(verb: Token) -> bool:
+    """Whether the words complain that something is not done: "has not been rinsed yet"."""
+    words = {child.lower_ for child in verb.children}
+    return is_passive(verb) and bool(words & NEGATIONS) and bool(words & {"yet", "still"})
+
+
 def _is_told(verb: Token) -> bool:
     """Whether the verb stands in a clause that only describes."""
     marks = {c.lower_ for c in verb.children if c.dep_ in {"mark", "advmod"}}
@@ -110,7 +116,7 @@ def _is_told(verb: Token) -> bool:
 
 def mood_of(verb: Token) -> Mood:
     """Mood of a verb in its sentence."""
-    if is_framed(verb):
+    if is_framed(verb) or is_undone(verb):
         return "request"
     if _is_told(verb):
         return "statement"
@@ -135,6 +141,8 @@ def mood_of(verb: Token) -> Mood:
 
 def is_negated(verb: Token) -> bool:
     """Whether the verb, or a verb that carries it, is denied."""
+    if is_undone(verb):
+        return False
     chain = [verb, *carriers_of(verb)]
     if verb.dep_ == "conj" and any(c.lower_ in {"or", "nor"} for c in verb.head.children):
         chain.append(verb.head)

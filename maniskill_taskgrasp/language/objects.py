@@ -84,8 +84,12 @@ def _only_describes(text: str, name: str) -> bool:
     return name.startswith(f"{text} ") or f" {text} " in name
 
 
-def nearest(text: str) -> tuple[tuple[str, float], ...]:
+def nearest(text: str, *, synonyms: bool = True) -> tuple[tuple[str, float], ...]:
     """Objects by cosine of their names' vectors with a text, best first.
+
+    Args:
+        text: what to compare.
+        synonyms: whether other names than the data's count too.
 
     Raises:
         EncoderMissingError: the encoder is not installed.
@@ -94,7 +98,8 @@ def nearest(text: str) -> tuple[tuple[str, float], ...]:
     cosines = head.name_vectors @ load_encoder().encode([text])[0]
     best: dict[str, float] = {}
     for i in np.argsort(-cosines)[: 4 * CANDIDATES]:
-        if _only_describes(text, head.names[i]):
+        foreign = not synonyms and head.names[i] not in load_knowledge().objects
+        if foreign or _only_describes(text, head.names[i]):
             continue
         for name, certainty in load_lexicon().names[head.names[i]]:
             best.setdefault(name, float(cosines[i]) * certainty)
@@ -133,6 +138,22 @@ def from_data(action: str, besides: tuple[tuple[str, float], ...] = ()) -> Held:
     name, share = ranked[0]
     note = f"no object was named for {action}: took {name!r}, which people used most often for it"
     return Held(name, share, (*ranked[1:CANDIDATES], *besides), note, guessed=True)
+
+
+def named_after(clause: Clause) -> Held | None:
+    """The object whose name tells its purpose: "brush your teeth" is the toothbrush's job."""
+    target = clause.role("target")
+    if target is None or target.pronoun or target.mention is not None:
+        return None
+    try:
+        ranked = nearest(f"{clause.verb} {target.text}", synonyms=False)
+    except EncoderMissingError:
+        return None
+    name, score = next(iter(ranked), ("", 0.0))
+    if score < NEAREST_MINIMUM or name == target.text:
+        return None
+    note = f"no object was named: took {name!r}, whose name says what it is for"
+    return Held(name, score, ranked[1:], note, guessed=True)
 
 
 def antecedent(task: Task) -> Mention | None:
@@ -264,8 +285,8 @@ def choose_object(task: Task, action: str | None) -> Held:
         return held
     target = clause.role("target")
     if action in TOOL_ACTIONS:
-        return _spoken_of(task, action) or from_data(action)
+        return _spoken_of(task, action) or named_after(clause) or from_data(action)
     if target is not None and not target.pronoun:
-        return from_words(target.text)
+        return named_after(clause) or from_words(target.text)
     before = antecedent(task) if target is None else None
     return from_mention(before) if before is not None else Held(None, 0.0)

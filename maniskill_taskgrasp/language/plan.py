@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, load_lexicon, matches
 from maniskill_taskgrasp.language.roles import PLACE_WORDS, SOMETHING, Role, governor
 from maniskill_taskgrasp.language.words import word_set
@@ -150,22 +151,29 @@ def _is_asked(told: Told) -> bool:
     if clause.transfer and target is not None and target.text in ABSTRACT:
         return False
     left_alone = clause.verb == "leave" and "alone" in clause.words
-    only_pointed = clause.verb in SEE_VERBS
+    only_pointed = clause.verb in SEE_VERBS and not _has_particular_phrase(clause)
     return clause.mood != "statement" and not clause.negated and not left_alone and not only_pointed
+
+
+def _has_particular_phrase(clause: Clause) -> bool:
+    """Whether the lexicon has a phrase for more than the verb alone: "see how long"."""
+    phrases = load_lexicon().phrases.get(clause.verb, ())
+    nouns = frozenset(clause.words)
+    return any(p.specificity > 1 and matches(p, clause.words, nouns) for p in phrases)
 
 
 def _may_use_tool(clause: Clause) -> bool:
     """Whether the verb names something that people do with a tool."""
     phrases = load_lexicon().phrases.get(clause.verb, ())
-    return any(p.action in TOOL_ACTIONS and not p.nouns for p in phrases)
+    nouns = frozenset(clause.words)
+    tools = [p for p in phrases if p.action in TOOL_ACTIONS]
+    return any(not p.nouns or matches(p, clause.words, nouns) for p in tools)
 
 
 def _only_prepares(clause: Clause) -> bool:
     """Whether the verb is one of `PREPARING_VERBS` and no phrase makes it more ("take off")."""
-    nouns = frozenset(clause.words)
-    phrases = load_lexicon().phrases.get(clause.verb, ())
-    more = any(p.specificity > 1 and matches(p, clause.words, nouns) for p in phrases)
-    return clause.verb in USE_VERBS or (clause.verb in PREPARING_VERBS and not more)
+    prepares = clause.verb in PREPARING_VERBS and not _has_particular_phrase(clause)
+    return clause.verb in USE_VERBS or prepares
 
 
 def _belongs(told: Told, preparation: Told) -> bool:
@@ -184,10 +192,14 @@ def make_tasks(told: list[Told]) -> list[Task]:
     """Requests with their transfers joined; pure transfers stay on their own."""
     tasks: list[Task] = []
     pending: Told | None = None
-    for item in filter(_is_asked, told):
+    asked = [item for item in told if _is_asked(item)]
+    for at, item in enumerate(asked):
+        following = asked[at + 1] if at + 1 < len(asked) else None
         clause = item.clause
         if clause.transfer or _only_prepares(clause):
-            if clause.transfer and tasks and _is_wish_without_tool(tasks[-1]):
+            leads = following is not None and _belongs(following, item)
+            names_tool = not leads and bool(tasks) and _names_tool(item, tasks[-1])
+            if tasks and (names_tool or (clause.transfer and _is_wish_without_tool(tasks[-1]))):
                 anything = _names_something(clause)
                 tasks[-1] = Task(tasks[-1].told, held_role(clause), item, anything)
                 continue
@@ -202,6 +214,19 @@ def make_tasks(told: list[Told]) -> list[Task]:
             tasks.append(Task(item))
             pending = None
     return tasks + alone(pending)
+
+
+def _names_tool(item: Told, task: Task) -> bool:
+    """Whether a clause says what to do the task before it with: "wipe it, use the cloth"."""
+    held = held_role(item.clause)
+    if item.clause.transfer or task.preparation is not None or task.told is None or held is None:
+        return False
+    told = task.told.clause
+    if held.mention is None or told.role("instrument") is not None or not _may_use_tool(told):
+        return False
+    name, known = held.mention.objects[0][0], load_knowledge().pair_counts
+    phrases = load_lexicon().phrases.get(told.verb, ())
+    return item.clause.verb in USE_VERBS or any((name, p.action) in known for p in phrases)
 
 
 def _is_wish_without_tool(task: Task) -> bool:

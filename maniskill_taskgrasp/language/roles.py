@@ -67,6 +67,14 @@ def governor(doc: Doc, start: int, low: int) -> str | None:
     return None
 
 
+def is_denied(doc: Doc, start: int) -> bool:
+    """Whether a noun is named only to rule it out: "but not with the sponge"."""
+    at = start - 1
+    while at >= 0 and (doc[at].pos_ in {"DET", "ADJ", "PRON"} or doc[at].lower_ == "with"):
+        at -= 1
+    return 0 < at < start - 1 and doc[at].lower_ == "not" and doc[at - 1].pos_ != "AUX"
+
+
 def _kind_of(word: str | None) -> RoleKind:
     """The part that a preposition gives its noun."""
     if word in INSTRUMENT_WORDS:
@@ -100,7 +108,8 @@ def find_roles(
         if mention is not None and not mention.start <= verb < mention.end:
             kind = _kind_of(governor(doc, mention.start, stop)) if at > verb else "target"
             of = any(t.lower_ == "of" for t in doc[max(0, mention.start - 2) : mention.start])
-            roles.append(Role(kind, mention.words, mention.start, mention, part_of=of))
+            if not is_denied(doc, mention.start):
+                roles.append(Role(kind, mention.words, mention.start, mention, part_of=of))
             at = mention.end
             continue
         if at != verb and token.lower_ in PRONOUNS and token.dep_ not in {"det", "mark", "expl"}:

@@ -26,7 +26,14 @@ ASKING = re.compile(
     r"|do you (?:have|know|like|love|believe|own)\b|(?:having|being)\s"
 )
 """Questions for an answer in words, and participles: they ask for nothing to be done."""
+BEHIND_UNKNOWN = word_set("behind_unknown")
+"""Words that show the unknown word before them to be a verb: "shave with", "plate the"."""
 FUNCTION_WORDS = word_set("english_words") | CONNECTORS | FILLERS
+RETRACTING = re.compile(
+    r"(?:(?:no(?! need)|nope|wait|sorry|(?:or )?rather|scratch that|actually,? just|"
+    r"on second thought),?\s+)+"
+)
+"""What a speaker says before a request that takes the place of the one before it."""
 NEW_SUBJECT = re.compile(r",\s+(?=(?:i|i'm|i'll|i'd|we|we'll|you)\s)")
 
 TELLING_WORDS = frozenset(
@@ -55,12 +62,14 @@ class Segment:
     inner: str | None = None
     """The framed imperative somewhere inside, for when nothing else is understood."""
     asking: bool = False
-    """It is a question for an answer in words."""
+    """It asks for nothing to be done: a question for an answer in words, or taken back."""
 
 
 def _is_request_start(words: list[str], at: int) -> bool:
     """Whether a base verb, with what may precede it, begins at word `at`."""
     verbs = load_lexicon().verbs
+    retracting = RETRACTING.match(" ".join([*words[at:], ""]))
+    at += len(retracting.group().split()) if retracting else 0
     while at < len(words) and words[at].strip(",") in FILLERS | CONNECTORS | {"please"}:
         at += 1
     if " ".join(words[at : at + 2]) in {"do not", "no need"}:
@@ -85,7 +94,8 @@ def split_requests(sentence: str) -> list[str]:
             lone_verb = i - start < 2 and not words[i - 1].endswith(",")
             choice = words[i] in {"or", "nor"}
             lead = LEADING_TOOL.match(" ".join([*words[start:i], "x"]))
-            joined = inside or lone_verb or choice or lead
+            retraction = RETRACTING.fullmatch(" ".join([*words[start:i], ""]))
+            joined = inside or lone_verb or choice or lead or retraction
             if boundary and not joined and _is_request_start(words, i):
                 parts.append(" ".join(words[start:i]))
                 start = i
@@ -102,7 +112,7 @@ def _starts_request(body: str) -> bool:
     second = body.partition(" ")[2].partition(" ")[0]
     grammar = first in FUNCTION_WORDS | SUBJECT_WORDS or not first.replace("-", "").isalpha()
     noun_or_grammar = grammar or first in load_lexicon().names
-    return second in {"the", "a", "an", "my", "this", "that", "up"} and not noun_or_grammar
+    return second in BEHIND_UNKNOWN and not noun_or_grammar
 
 
 def _move_lead_behind(body: str) -> str:
@@ -128,6 +138,14 @@ def _inner_request(body: str) -> str | None:
         if starts and not told and not denied:
             return OPENER + " ".join(words[at:])
     return None
+
+
+def strip_retraction(part: str) -> tuple[str, bool]:
+    """A request without "no, wait" before it, and whether that was there."""
+    said = RETRACTING.match(part)
+    if said is None or not _is_request_start(part.split(), 0):
+        return part, False
+    return part[said.end() :], True
 
 
 def frame(part: str) -> Segment:

@@ -16,6 +16,7 @@ from maniskill_taskgrasp.language.words import word_set
 LONG_WORD = 8  # From this length on two slips are forgiven, before it one.
 MEDIUM_WORD = 6  # Shorter words are corrected to likely words only.
 LIKELY_SLIP = 0.65  # Cost (`_cost`) of one slip in a likely word, or of a swap in any.
+VERB_FIRST = 0.1  # What it costs less that the first word is a verb.
 COMMON = 8000  # Entries of the encoder's vocabulary, most frequent first, that count as common.
 SHORTEST = 3  # Shorter words are left as they are.
 MAX_UNKNOWN = 6  # More unknown words than this are no slips; it also bounds the time.
@@ -101,11 +102,16 @@ def _cost(word: str, candidate: str, distance: int) -> float:
     return distance - 0.5 * (swapped or doubled) - 0.4 * likely + 0.6 * other_first
 
 
-def nearest_word(word: str) -> str | None:
+def nearest_word(word: str, *, verb: bool = False) -> str | None:
     """The domain word that a slip most likely meant, None where there is none.
 
     Long words may have two slips where a likely word is meant; other words have one at most.
+
+    Args:
+        word: what was typed.
+        verb: it stands where a request starts, so that a verb is meant rather than a noun.
     """
+    verbs = load_lexicon().verbs if verb else frozenset()
     most = 2 if len(word) >= LONG_WORD else 1
     letters = Counter(word)
     best: tuple[float, int, str] | None = None
@@ -116,7 +122,8 @@ def nearest_word(word: str) -> str | None:
             distance = slip_distance(word, candidate, most)
             far = distance == most == 2 and candidate not in likely_words()
             if distance <= most and not far:
-                key = (_cost(word, candidate, distance), -length, candidate)
+                cost = _cost(word, candidate, distance) - VERB_FIRST * (candidate in verbs)
+                key = (cost, -length, candidate)
                 best = min(best, key) if best else key
     limit = most if len(word) >= MEDIUM_WORD else LIKELY_SLIP
     return best[-1] if best is not None and best[0] <= limit else None
@@ -139,7 +146,7 @@ def correct(text: str) -> tuple[str, tuple[str, ...]]:
         core = piece.strip(".,!?;:'-")
         unknown = core.isascii() and core.isalpha() and core not in known_words()
         if unknown and len(core) >= SHORTEST and len(notes) < MAX_UNKNOWN:
-            fixed = _two_words(core) or nearest_word(core)
+            fixed = _two_words(core) or nearest_word(core, verb=not words)
             if fixed:
                 notes.append(f"read {core!r} as {fixed!r}")
                 piece = piece.replace(core, fixed)
@@ -172,9 +179,11 @@ def respell_name(words: str) -> str | None:
         wrong = [(a, b) for a, b in zip(parts, others, strict=True) if a != b]
         if len(wrong) == 1 and len(wrong[0][0]) > SHORTEST:
             slip, meant = wrong[0]
-            unfinished = meant.startswith(slip) and len(meant) <= len(slip) + 2
+            longer = meant.startswith(slip) and len(meant) <= len(slip) + 2
+            unfinished = longer and meant in likely_words()
             near = slip[0] == meant[0] and slip_distance(slip, meant, 1) == 1
-            common = len(parts) == 1 and slip in common_words() and slip not in base_forms()
-            if (unfinished or near) and not common:
+            common = len(parts) == 1 and slip in common_words()
+            verb = slip in base_forms()
+            if (near and not common) or (unfinished and (verb or not common)):
                 return name
     return None

@@ -18,7 +18,7 @@ from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, load_lexicon
 from maniskill_taskgrasp.language.model import load_model
 from maniskill_taskgrasp.language.objects import Held, antecedent, choose_object
 from maniskill_taskgrasp.language.plan import Task, alone, contradiction, make_tasks, tell
-from maniskill_taskgrasp.language.segments import frame, split_requests
+from maniskill_taskgrasp.language.segments import frame, split_requests, strip_retraction
 from maniskill_taskgrasp.language.spelling import correct, correct_verb
 from maniskill_taskgrasp.language.text import FILLERS, MAX_SEGMENTS, clean, split_sentences
 from maniskill_taskgrasp.language.words import word_set
@@ -42,7 +42,12 @@ LIGHTER_NOTE = "the sentence encoder is not installed ({}): only listed phrases 
 def read_segments(text: str) -> tuple[list[Segment], list[Doc]]:
     """Framed segments of a cleaned text, and their parses with mentions and clauses."""
     parts = [part for sentence in split_sentences(text) for part in split_requests(sentence)]
-    segments = [frame(part) for part in parts[:MAX_SEGMENTS]]
+    segments: list[Segment] = []
+    for part in parts[:MAX_SEGMENTS]:
+        request, instead = strip_retraction(part)
+        if instead:
+            segments = [replace(segment, asking=True) for segment in segments]
+        segments.append(frame(request))
     docs = list(load_model().pipe([segment.framed for segment in segments]))
     return segments, docs
 
