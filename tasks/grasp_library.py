@@ -7,18 +7,22 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
 import numpy as np
 
+from maniskill_taskgrasp.agents.hand import HandDescription
 from maniskill_taskgrasp.tasks.placement import Placement
+from maniskill_taskgrasp.tasks.posture_space import PostureSpace
+from maniskill_taskgrasp.topology import TOPOLOGIES, Topology
 
 LIBRARY_FILE = "pregrasps.json"
 FORM_WEIGHT = 0.7  # Of a stored grasp's worth; the rest is the plain lift.
 WORTH = 0.7  # Size mismatch (log ratio) that one whole unit of worth makes up for.
+OTHER_TOPOLOGY = 0.35  # Size mismatch that counts for a grasp found for kin.
 OTHER_PRESENTATION = 0.5  # Size mismatch that counts for a grasp found in another presentation.
 
 
@@ -58,17 +62,45 @@ class Grasp:
 
 
 def nearest_grasps(
-    topology: str, placement: Placement, count: int = 1, known: Sequence[Grasp] | None = None
+    hand: HandDescription,
+    topology: Topology,
+    placement: Placement,
+    count: int = 1,
+    known: Sequence[Grasp] | None = None,
 ) -> list[Grasp]:
-    """Grasps of a topology that suit the placed object best, best first; may be empty.
+    """Grasps that suit a topology and the placed object best, best first; may be empty.
+
+    Those of kin, topologies with the same opposition, are carried over to the topology's own
+    fingers and count as somewhat less suited.
 
     Args:
-        topology: slug.
         known: among which; by default those that are shipped.
     """
-    known = stored_grasps() if known is None else known
-    own = [grasp for grasp in known if grasp.topology == topology]
-    return sorted(own, key=lambda grasp: grasp.mismatch(placement))[:count]
+    kin = {other.slug: other for other in TOPOLOGIES if other.opposition == topology.opposition}
+    ranked = []
+    for grasp in stored_grasps() if known is None else known:
+        if grasp.topology in kin:
+            distance = OTHER_TOPOLOGY * (grasp.topology != topology.slug)
+            ranked.append((grasp.mismatch(placement) + distance, grasp))
+    ranked.sort(key=lambda row: row[0])
+    return [_carried(hand, kin[grasp.topology], grasp, topology) for _, grasp in ranked[:count]]
+
+
+def _carried(hand: HandDescription, maker: Topology, grasp: Grasp, topology: Topology) -> Grasp:
+    """The grasp with the fingers of another topology."""
+    if maker == topology:
+        return grasp
+    space = PostureSpace.of(hand, topology)
+    numbers = PostureSpace.of(hand, maker).compress(
+        np.array(grasp.preshape), np.array(grasp.closing)
+    )
+    preshape, closing = space.expand(numbers.clip(space.lower, space.upper)[None])
+    return replace(
+        grasp,
+        topology=topology.slug,
+        preshape=tuple(preshape[0].tolist()),
+        closing=tuple(closing[0].tolist()),
+    )
 
 
 @cache

@@ -12,21 +12,21 @@ from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.tasks.cross_entropy import SearchSpace, cross_entropy
 from maniskill_taskgrasp.tasks.grasp_library import Grasp, nearest_grasps
-from maniskill_taskgrasp.tasks.pose_search import (
+from maniskill_taskgrasp.tasks.pose_search import GraspTrials
+from maniskill_taskgrasp.tasks.posture_space import (
     POSTURE_FLOOR,
     POSTURE_SPREAD,
     PREGRASP_FLOOR,
     PREGRASP_LOWER,
     PREGRASP_SPREAD,
     PREGRASP_UPPER,
-    GraspTrials,
     PostureSpace,
 )
-from maniskill_taskgrasp.topology import TOPOLOGIES, Topology
+from maniskill_taskgrasp.topology import Topology
 
 Array = NDArray[np.float64]
 
-OWN_STARTS, KIN_STARTS = 8, 4  # Stored grasps of the topology and of its kin that are tried first.
+STARTS = 11  # Stored grasps that are tried first.
 SCOOP = np.array([0.0, -0.018, 0.0, 0.25, 0.0, 0.0])  # Palm lower, fingers down: facts, 3.
 GOOD_START = 0.5  # Share of trials in lift and form from which a search stays near its start.
 NEAR, WIDE = 0.4, 1.0  # Spread of the first generation around a good and a poor start.
@@ -114,14 +114,7 @@ class GraspSearch:
     def _starts(self) -> tuple[list[str], Array]:
         """Names and numbers (k, 14) of what is tried first."""
         placement, topology = self._placement, self._topology
-        stored = nearest_grasps(topology.slug, placement, OWN_STARTS, self._known)
-        kin = [
-            grasp
-            for other in TOPOLOGIES
-            if other.opposition == topology.opposition and other != topology
-            for grasp in nearest_grasps(other.slug, placement, 1, self._known)
-        ]
-        stored += sorted(kin, key=lambda grasp: grasp.mismatch(placement))[:KIN_STARTS]
+        stored = nearest_grasps(AR10, topology, placement, STARTS, self._known)
         rule = self._trials.env.planner.bounding_box(topology.slug, placement).numpy()
         own = self._posture.start()
         rows = [self._numbers(grasp) for grasp in stored]
@@ -131,11 +124,8 @@ class GraspSearch:
         return [grasp.obj for grasp in stored] + ["rule", "rule"], starts[: self._budget.num_envs]
 
     def _numbers(self, grasp: Grasp) -> Array:
-        """(14,) the numbers that are searched, of a stored grasp of any topology."""
-        maker = next(t for t in TOPOLOGIES if t.slug == grasp.topology)
-        shape = PostureSpace.of(AR10, maker).compress(
-            np.array(grasp.preshape), np.array(grasp.closing)
-        )
+        """(14,) the numbers that are searched, of a stored grasp."""
+        shape = self._posture.compress(np.array(grasp.preshape), np.array(grasp.closing))
         return np.concatenate([grasp.pregrasp, shape])
 
     def _try(self, candidates: Array, *, whole: bool) -> tuple[Array, Array, Array]:

@@ -14,6 +14,7 @@ from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, Primitive
 from maniskill_taskgrasp.tasks.grasp_library import nearest_grasps
 from maniskill_taskgrasp.tasks.placement import Placement
 from maniskill_taskgrasp.tasks.pregrasp import palm_rotation
+from maniskill_taskgrasp.topology import resolve_topology
 
 CLEARANCE = 0.004  # [m] between the table and the fingers' deepest point while they close.
 SWEEP = 6  # Instants of the closing at which the fingers' depth is taken.
@@ -47,7 +48,7 @@ class PregraspPlanner:
         The stored grasp that suits the object best; where the topology has none, the rule of
         `bounding_box` with the hand's own posture.
         """
-        stored = nearest_grasps(slug, placement)
+        stored = nearest_grasps(self._hand, resolve_topology(slug), placement)
         if stored:
             return stored[0].pregrasp, stored[0].preshape, stored[0].closing
         posture = self._hand.postures[slug]

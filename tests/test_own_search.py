@@ -10,7 +10,7 @@ from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.tasks import grasp_search, own_search
 from maniskill_taskgrasp.tasks.grasp_library import Grasp
 from maniskill_taskgrasp.tasks.own_search import FoundGrasp, SearchBudget, find_grasp
-from maniskill_taskgrasp.tasks.pose_search import PREGRASP_LOWER, PREGRASP_UPPER
+from maniskill_taskgrasp.tasks.posture_space import PREGRASP_LOWER, PREGRASP_UPPER
 from maniskill_taskgrasp.topology import resolve_topology
 
 PAD = resolve_topology("Precision pad abd 2-3")

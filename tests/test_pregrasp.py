@@ -10,9 +10,14 @@ from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.assets.objects import library
 from maniskill_taskgrasp.episode import MAX_EPISODE_STEPS, PHASE_ENDS
 from maniskill_taskgrasp.tasks.arm_ik import resample
-from maniskill_taskgrasp.tasks.grasp_library import Grasp, dump_grasps, stored_grasps
+from maniskill_taskgrasp.tasks.grasp_library import (
+    Grasp,
+    dump_grasps,
+    nearest_grasps,
+    stored_grasps,
+)
 from maniskill_taskgrasp.tasks.placement import place
-from maniskill_taskgrasp.tasks.pose_search import PostureSpace
+from maniskill_taskgrasp.tasks.posture_space import PostureSpace
 from maniskill_taskgrasp.tasks.pregrasp import (
     HOVER_DISTANCE,
     LIFT_DISTANCE,
@@ -117,6 +122,22 @@ def test_mismatch_prefers_like_size_and_good_grasps():
     worse = grasp(extents=size, height=float(placement.centre[2]), lift=0.2, both=0.0)
     assert same.mismatch(placement) < larger.mismatch(placement)
     assert same.mismatch(placement) < worse.mismatch(placement)
+
+
+def test_grasps_of_kin_are_carried_over_and_come_second():
+    """A pinch with two fingers serves one with three; a palm grasp never does."""
+    placement = place(library.load("ball"))
+    size, height = tuple(placement.extents.tolist()), float(placement.centre[2])
+    own, kin, other = (
+        grasp(topology=slug, extents=size, height=height)
+        for slug in ("precision_pad_abd_2_4", "precision_pad_abd_2_3", "power_palm_abd_2_5")
+    )
+    topology = resolve_topology("precision_pad_abd_2_4")
+    ranked = nearest_grasps(AR10, topology, placement, 3, [other, kin, own])
+    assert ranked[0] == own
+    assert [g.topology for g in ranked] == [topology.slug] * 2
+    ring = AR10.actuators.index("ring_mcp")
+    assert ranked[1].closing[ring] > ranked[1].preshape[ring]
 
 
 def test_stored_grasps_come_from_train_objects_only():
