@@ -161,7 +161,7 @@ def in_topology(
     Args:
         shares: forces averaged over the last moments of the hold.
         topology_index: (num_envs,) long, `topology.TOPOLOGIES`.
-        thumb_rotation: (num_envs,) [rad] rotation of the thumb.
+        thumb_rotation: (num_envs,) [rad] commanded rotation of the thumb.
         pip: (num_envs, 4) [rad] middle joints of index, middle, ring, little.
 
     Returns:

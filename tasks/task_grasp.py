@@ -388,7 +388,10 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         qpos = self.agent.robot.get_qpos()[:, self.agent.actuator_indices]
         shares = self._surfaces.shares(self.outcome.mean_forces)
         pip = qpos[:, self.agent.finger_pip]
-        return in_topology(shares, self.topology_index, qpos[:, self.agent.thumb_rotation], pip)
+        # The thumb's rotation counts as commanded: its contact bends it back (facts: grasping, 6).
+        command = self.agent.controller.controllers["hand"].command
+        thumb = command[:, self.agent.thumb_rotation]
+        return in_topology(shares, self.topology_index, thumb, pip)
 
     # Observation
 
