@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from maniskill_taskgrasp.assets.objects.folders import cache_folder
 from maniskill_taskgrasp.assets.objects.geometry import matrix_to_quat, part_triangles
@@ -129,12 +130,19 @@ def _coloured_glb(mesh: trimesh.Trimesh) -> bytes:
         # Corners are shared across shallow angles only: curves shine, edges stay crisp.
         part = trimesh.graph.smooth_shade(part, angle=CREASE)
         material = trimesh.visual.material.PBRMaterial(
-            baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=0.6
+            baseColorFactor=_linear(colour), metallicFactor=0.0, roughnessFactor=0.6
         )
         part.visual = trimesh.visual.TextureVisuals(material=material)
         scene.add_geometry(part)
     content: bytes = scene.export(file_type="glb")  # type: ignore[assignment]
     return content
+
+
+def _linear(colour: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """RGBA of the screen (sRGB) as a glTF material wants it: light, not code value."""
+    light = (colour / 255.0) ** 2.2
+    light[3] = colour[3] / 255.0
+    return (255 * light).round().astype(np.uint8)
 
 
 def _cached(content: bytes, suffix: str) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from maniskill_taskgrasp.assets.objects.geometry import (
     part_corners,
     quat_to_matrix,
 )
+from maniskill_taskgrasp.assets.objects.library import load, names
 from maniskill_taskgrasp.assets.objects.model import ObjectModel, RestingPose
 from maniskill_taskgrasp.assets.objects.presentation import Presentation, present
 from maniskill_taskgrasp.assets.objects.recipe import load_recipes
@@ -22,11 +24,13 @@ if TYPE_CHECKING:
     import sapien
 
 Image = NDArray[np.uint8]
-TILE = 200  # [pixel] edge of a contact sheet's picture.
+TILE = 160  # [pixel] edge of a contact sheet's picture.
+SHARP = 2  # Pictures of the sheet are drawn so many times larger, then reduced.
 CARD = 300  # [pixel] edge of an object card's pictures.
 FACING = np.array([0.2, -1.0])  # Where the face of a standing thing is turned.
 VIEW = np.array([0.5, -0.66, 0.56])  # Direction from the object to the camera.
 FIELD = 0.35  # [rad] vertical field of view: long, so that shapes are hardly distorted.
+SHADES = 0xFC  # Bits kept of each colour in the contact sheet: 64 shades, half the file.
 LABEL = 16  # [pixel]
 
 
@@ -37,12 +41,12 @@ class Studio:
         import sapien
 
         self.scene = sapien.Scene()
-        self.scene.set_ambient_light([0.45, 0.45, 0.45])
+        self.scene.set_ambient_light([0.55, 0.55, 0.55])
         self.scene.add_directional_light([-0.3, 0.6, -1.0], [0.9, 0.9, 0.88], shadow=True)
         self.scene.add_directional_light([-0.8, -0.2, -0.4], [0.35, 0.35, 0.4])
         ground = self.scene.create_actor_builder()
-        white = sapien.render.RenderMaterial(base_color=(0.93, 0.93, 0.91, 1), roughness=1.0)
-        ground.add_box_visual(half_size=(3, 3, 0.005), material=white)
+        matt = sapien.render.RenderMaterial(base_color=(0.8, 0.72, 0.56, 1), roughness=1.0)
+        ground.add_box_visual(half_size=(3, 3, 0.005), material=matt)
         ground.set_initial_pose(sapien.Pose([0, 0, -0.005]))
         ground.build_static("ground")
         self.camera = self.scene.add_camera("camera", pixels, pixels, FIELD, 0.01, 20)
@@ -90,7 +94,7 @@ def pose_shown(model: ObjectModel) -> RestingPose:
 def object_picture(
     studio: Studio, model: ObjectModel, shown: RestingPose | Presentation, parts: bool = False
 ) -> Image:
-    """The object on a white ground, on the table or in its fixture, its x axis to the right.
+    """The object on a plain ground, on the table or in its fixture, its x axis to the right.
 
     Args:
         parts: draw the convex parts, each in its own colour, instead of the mesh.
@@ -182,13 +186,17 @@ def contact_sheet(models: Sequence[ObjectModel], path: Path, columns: int = 14) 
     from PIL import Image as Pillow
     from PIL import ImageDraw
 
-    studio, rows = Studio(TILE), -(-len(models) // columns)
+    studio, rows = Studio(TILE * SHARP), -(-len(models) // columns)
     sheet = Pillow.new("RGB", (columns * TILE, rows * (TILE + LABEL)), "white")
     draw = ImageDraw.Draw(sheet)
     for index, model in enumerate(models):
         corner = (index % columns * TILE, index // columns * (TILE + LABEL))
         picture = object_picture(studio, model, pose_shown(model))
-        sheet.paste(Pillow.fromarray(picture), corner)
+        sheet.paste(Pillow.fromarray(picture).reduce(SHARP), corner)
         draw.text((corner[0] + TILE // 2, corner[1] + TILE), model.name, "black", anchor="ma")
     path.parent.mkdir(parents=True, exist_ok=True)
-    sheet.save(path, optimize=True)
+    sheet.point(lambda level: level & SHADES).save(path, optimize=True)
+
+
+if __name__ == "__main__":  # `python -m maniskill_taskgrasp.assets.objects.render FILE`
+    contact_sheet([load(name) for name in names()], Path(sys.argv[1]))

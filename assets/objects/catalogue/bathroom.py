@@ -87,7 +87,13 @@ def bar_soap(a: float, b: float, c: float) -> list[Piece]:
 @item("soap", "bathroom", "soap")
 def soap(a: float, b: float, c: float) -> list[Piece]:
     body = box(a, b, c, "#e9a8b8", 0.003)
-    return [body, patch(a * 0.55, b * 0.4, "#d07f95").at(0, 0, c / 2)]
+    bubbles = [
+        *dots([(a * 0.1, -b * 0.12)], b * 0.15, WHITE),
+        *dots([(a * 0.22, b * 0.14), (-a * 0.04, b * 0.16)], b * 0.1, WHITE),
+        *dots([(a * 0.34, -b * 0.05), (-a * 0.12, -b * 0.2)], b * 0.06, WHITE),
+    ]
+    bands = [patch(a * 0.07, b, "#c2577a").at(x, 0, c / 2) for x in (-a * 0.3, a * 0.44)]
+    return [body, *(bubble.at(0, 0, c / 2) for bubble in bubbles), *bands]
 
 
 @item("soap dish", "bathroom", "ceramic")

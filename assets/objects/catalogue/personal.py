@@ -15,6 +15,7 @@ from maniskill_taskgrasp.assets.objects.forms import (
 )
 from maniskill_taskgrasp.assets.objects.pieces import (
     Piece,
+    arc,
     box,
     convex,
     rod,
@@ -26,11 +27,23 @@ from maniskill_taskgrasp.assets.objects.recipe import item
 
 @item("coin", "household", "metal")
 def coin(a: float, b: float, c: float) -> list[Piece]:
-    r = a / 2
+    r, face = a / 2, c / 2 - 1e-4
+    beads = [
+        disc(r * 0.05, "#a5822f").at(face, y, z) for _, y, z in arc(r * 0.78, 0, 345, 23, "yz")
+    ]
+    one = [
+        box(4e-4, r * 0.14, r * 0.8, "#7d5f1c").seen_only().at(face),
+        box(4e-4, r * 0.14, r * 0.3, "#7d5f1c")
+        .turn((1, 0, 0), -40)
+        .seen_only()
+        .at(face, -r * 0.11, r * 0.31),
+        box(4e-4, r * 0.5, r * 0.12, "#7d5f1c").seen_only().at(face, 0, -r * 0.4),
+    ]
     return [
         turned([(-c / 2, r), (c / 2, r)], BRASS, hollow=(0.0001, r * 0.9)),
-        disc(r * 0.45, "#a5822f").at(c / 2 - 1e-4),
-        disc(r * 0.45, "#a5822f").at(-c / 2 + 1e-4),
+        disc(r * 0.45, "#a5822f").at(-face),
+        *beads,
+        *one,
     ]
 
 

@@ -216,7 +216,8 @@ def _stadium(x: float, y: float) -> list[tuple[float, float]]:
 
 @item("tweezer", "tools", "metal")
 def tweezer(a: float, b: float, c: float) -> list[Piece]:
-    return [
+    gap = [(-a * 0.4, 0), (0, b * 0.27), (a / 2, 0.0002), (0, -b * 0.27)]
+    legs = [
         convex(
             [
                 (x, s * y, z)
@@ -234,6 +235,7 @@ def tweezer(a: float, b: float, c: float) -> list[Piece]:
         )
         for s in (-1, 1)
     ]
+    return [*legs, slab(gap, c * 0.1, BLACK).seen_only()]
 
 
 @item("round handle", "tools", "metal")
