@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from maniskill_taskgrasp.language.roles import Role
 
 NEAREST_MINIMUM = 0.66  # Cosine below which a name is not the object that was meant.
+NAMED_AFTER_MINIMUM = 0.75  # The same for a verb with its target, for a tool that nobody named.
 SLIP_SCORE = 0.8  # What one slip leaves of a name's certainty.
 CANDIDATES = 5  # Alternatives that an answer lists.
 CONTENT_ACTIONS = word_set("content_actions")
@@ -46,6 +47,7 @@ HELD_AT_PLACE = {
     "drying": frozenset(["towel", "cloth", "washcloth", "paper towel", "tissue"]),
     "measuring": frozenset(["scale", "bathroom scale", "measuring cup"]),
     "writing": frozenset(["computer"]),
+    "using": frozenset(["computer", "calculator"]),
 }
 """Tools that English puts behind "on": "dry your hands on the towel"."""
 
@@ -150,7 +152,7 @@ def named_after(clause: Clause) -> Held | None:
     except EncoderMissingError:
         return None
     name, score = next(iter(ranked), ("", 0.0))
-    if score < NEAREST_MINIMUM or name == target.text:
+    if score < NAMED_AFTER_MINIMUM or name == target.text:
         return None
     note = f"no object was named: took {name!r}, whose name says what it is for"
     return Held(name, score, ranked[1:], note, guessed=True)

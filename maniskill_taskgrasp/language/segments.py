@@ -34,7 +34,7 @@ RETRACTING = re.compile(
     r"on second thought),?\s+)+"
 )
 """What a speaker says before a request that takes the place of the one before it."""
-NEW_SUBJECT = re.compile(r",\s+(?=(?:i|i'm|i'll|i'd|we|we'll|you)\s)")
+NEW_SUBJECT = re.compile(r",\s+(?=(?:i|i'm|i'll|i'd|we|we'll|you|(?:can|could|would|will) you)\s)")
 
 TELLING_WORDS = frozenset(
     ["i", "he", "she", "they", "we", "it", "who", "the", "a", "an", "my", "of", "to"]
