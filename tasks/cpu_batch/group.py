@@ -155,12 +155,12 @@ class EnvGroup:
         All steps of one environment come in a row: its memory stays in the cache, which is worth
         a third of the time at 64 environments.
         """
-        start = time.perf_counter()
+        start = time.process_time()
         for system in self.systems:
             step = system.step
             for _ in range(steps):
                 step()
-        self.physics_seconds += time.perf_counter() - start
+        self.physics_seconds += time.process_time() - start
         if steps:
             self._stale[:] = True
             self._awake = False

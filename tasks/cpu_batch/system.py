@@ -247,7 +247,7 @@ class BatchedCpuSystem:
 
     @property
     def physics_seconds(self) -> float:
-        """[s] this process has spent inside PhysX's own step, for measuring its share."""
+        """[s] of CPU time that this process has spent inside PhysX's own step."""
         return sum(share.local.physics_seconds for share in self._shares)
 
     # Stepping ------------------------------------------------------------------------------------
