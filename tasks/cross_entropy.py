@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+PATIENCE = 3  # Generations before a search is given up.
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ def cross_entropy(
     first: int = 1,
     elite: float = 0.15,
     enough: float = math.inf,
+    hopeless: float = -math.inf,
 ) -> tuple[Array, Array]:
     """Maximise a noisy score.
 
@@ -43,6 +45,7 @@ def cross_entropy(
         starts: (k, dims) centres of the first generation, which share it evenly, the best first.
         first: populations in the first generation; a wide look keeps out of bad basins.
         enough: mean score of a generation after which the search stops.
+        hopeless: score that one candidate must reach within `PATIENCE` generations.
 
     Returns:
         (dims,) mean of the best generation's elite, and every candidate with its score,
@@ -66,7 +69,8 @@ def cross_entropy(
         spread = np.maximum(0.3 * spread + 0.7 * top.std(0), space.floor)
         if value >= best_value:
             best_mean, best_value = mean, value
-        if tried[:, -1].mean() >= enough:
+        lost = generation + 1 >= PATIENCE and max(h[:, -1].max() for h in history) < hopeless
+        if lost or tried[:, -1].mean() >= enough:
             break
     return best_mean, np.concatenate(history)
 

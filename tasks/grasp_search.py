@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -32,6 +33,7 @@ GOOD_START = 0.5  # Share of trials in lift and form from which a search stays n
 NEAR, WIDE = 0.4, 1.0  # Spread of the first generation around a good and a poor start.
 RIVALS = 3  # Poor starts that share the first generation.
 PROVEN = 0.95  # Share of trials in lift and form at which a start needs no search.
+HOPELESS = 2.5  # Score below which nothing was even lifted.
 ENOUGH = 5.1  # Mean score of a generation of which nearly all lift in form.
 SEED_STEP = 7919  # Between the seeds of batches, which no evaluation's seeds follow.
 
@@ -142,9 +144,10 @@ class GraspSearch:
             self._space(NEAR if good else WIDE),
             np.random.default_rng(self._budget.seed),
             population=self._budget.num_envs,
-            generations=self._budget.generations,
+            generations=math.ceil(self._budget.generations / (2 if good else 1)),
             first=1 if good else self._budget.first,
             enough=ENOUGH,
+            hopeless=HOPELESS,
         )
         return refined
 

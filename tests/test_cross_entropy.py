@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from maniskill_taskgrasp.tasks.cross_entropy import SearchSpace, cross_entropy
+from maniskill_taskgrasp.tasks.cross_entropy import PATIENCE, SearchSpace, cross_entropy
 
 SPACE = SearchSpace(
     lower=np.full(3, -2.0),
@@ -66,3 +66,8 @@ def test_cross_entropy_stops_when_a_generation_is_good_enough():
     _, history = search(bowl, enough=-0.5)
     assert len(history) < 40 * 12
     assert history[-40:, 3].mean() >= -0.5
+
+
+def test_cross_entropy_gives_up_where_nothing_ever_scores():
+    _, history = search(lambda c: np.zeros(len(c)), hopeless=1.0)
+    assert len(history) == 40 * PATIENCE
