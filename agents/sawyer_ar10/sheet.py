@@ -19,7 +19,8 @@ CAPTION = 32  # [px] height of the line of text below a pair.
 GAP = 10  # [px] between pairs.
 EYE = (-0.68, 0.38, 0.25)  # [m] in hand_base: from the thumb's side, a little before the palm.
 COLOURS = 96  # Of the palette, which keeps the file small.
-PAPER, INK = (255, 255, 255), (30, 30, 30)
+PAPER, INK, FAINT = (255, 255, 255), (30, 30, 30), (110, 110, 110)
+NOT_FORMED = " (this hand cannot)"
 
 
 def render_sheet(folder: Path) -> Path:
@@ -44,13 +45,16 @@ def _cell(studio: Studio, topology: Topology) -> Image.Image:
     for angles in (preshape, preshape + activation * (closing - preshape)):
         studio.pose(posture(PALM_DOWN, angles.tolist()))
         pictures.append(studio.hand_picture(EYE, PICTURE))
-    label = f"{topology.index + 1}  {topology.name}"
+    label = f"{topology.index + 1}  {topology.name}{'' if hand.feasible else NOT_FORMED}"
     pair = Image.fromarray(np.concatenate(pictures, axis=1))
     cell = Image.new("RGB", (pair.width, pair.height + CAPTION), PAPER)
     cell.paste(pair)
     text = ImageDraw.Draw(cell)
     font = ImageFont.load_default(size=CAPTION * 0.6)
     text.text((pair.width / 2, pair.height + CAPTION / 2), label, INK, font, anchor="mm")
+    small = ImageFont.load_default(size=CAPTION * 0.45)
+    for at, state in enumerate(("open", "closed")):
+        text.text((at * PICTURE[0] + CAPTION / 4, CAPTION / 4), state, FAINT, small)
     return cell
 
 
