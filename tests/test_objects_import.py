@@ -2,6 +2,7 @@
 
 import json
 import struct
+import time
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ import trimesh
 from maniskill_taskgrasp import cli
 from maniskill_taskgrasp.assets.objects.commands import import_objects, summary
 from maniskill_taskgrasp.assets.objects.folders import cache_folder, home_folder
-from maniskill_taskgrasp.assets.objects.geometry import part_corners
+from maniskill_taskgrasp.assets.objects.geometry import part_corners, parts_bounds
+from maniskill_taskgrasp.assets.objects.importer import import_file
 from maniskill_taskgrasp.assets.objects.library import load, names
 from maniskill_taskgrasp.assets.objects.meshfile import infer_units
 from maniskill_taskgrasp.errors import InputError
@@ -351,3 +353,20 @@ def test_import_command_prints_one_json_document(own_library, tmp_path, capsys):
     cli.main(["objects", "import", str(path), "--json"])
     (facts,) = json.loads(capsys.readouterr().out)
     assert {"name", "dimensions_m", "mass_kg", "parts", "watertight", "split"} <= set(facts)
+
+
+@pytest.mark.slow
+def test_authors_meshes_are_imported(own_library, shared_dir, record_property):
+    """All 20, at the size their index states; half take 5 s or less of one core."""
+    folder, seconds = shared_dir / "data" / "meshes", []
+    index = json.loads((folder / "index.json").read_text("utf-8"))
+    for entry in index:
+        start = time.process_time()
+        model, _ = import_file(folder / entry["file"])
+        seconds.append(time.process_time() - start)
+        assert sorted(model.extents_m) == pytest.approx(sorted(entry["extents_m"]), rel=0.02)
+        reach = np.ptp(parts_bounds(model.parts), axis=0)
+        np.testing.assert_allclose(reach, model.extents_m, rtol=0.03, atol=1e-3)
+    record_property("median_s", float(np.median(seconds)))
+    assert len(index) == 20
+    assert np.median(seconds) <= 5.0

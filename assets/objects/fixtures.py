@@ -23,6 +23,7 @@ Rectangle = tuple[float, float, float, float]  # x0, x1, y0, y1 [m]
 
 RAIL_HEIGHT = 0.04  # [m]
 SADDLE_FROM = 0.12  # [m] objects this long lie on two saddles with room for the hand between.
+STUBBY = 0.018  # [m] round objects this short do too: a screw rolls off the straight on boards.
 SADDLE = 0.012  # [m] length of a saddle along the object.
 GROOVE = 0.19  # Half gap of a groove over the width in it: a round thing touches 22 degrees aside,
 # where a 16-sided part has the middle of a facet.
@@ -48,8 +49,8 @@ def rail(model: ObjectModel) -> Stand:
     """Boards under the lying object that leave its sides free.
 
     Tried in turn, and the first that carries the centre of mass is taken: two grooved saddles near
-    the ends of a long object, whose groove keeps a round one from rolling; two boards along the
-    middle; two boards across near the ends or at the very ends.
+    the ends of a long object or a stubby round one, whose groove keeps it from rolling; two boards
+    along the middle; two boards across near the ends or at the very ends.
 
     Raises:
         InputError: none carries it.
@@ -96,7 +97,8 @@ def _rail_layouts(model: ObjectModel, rotation: Array) -> list[list[Rectangle]]:
         [(*end, float(y0), float(y1)) for end in ends],
         [(*end, float(y0), float(y1)) for end in tips],
     ]
-    if length >= SADDLE_FROM:
+    stubby = length <= STUBBY and model.affordance.roundness == "a"
+    if length >= SADDLE_FROM or stubby:
         layouts.insert(0, [(*end, *side) for end in ends for side in sides])
     return layouts
 

@@ -47,9 +47,7 @@ def read_mesh(path: Path, units: str | None = None) -> RawMesh:
     """
     if units is not None and units not in UNITS:
         raise InputError(f"unknown units {echo(units)}: m, cm or mm would do")
-    check_file(path)
-    mesh = _load(path)
-    _check_geometry(mesh, path)
+    mesh = read_surface(path)
     longest = float(mesh.extents.max())
     if units is not None:
         note = f"units {units} as given"
@@ -61,15 +59,27 @@ def read_mesh(path: Path, units: str | None = None) -> RawMesh:
             f"{echo(path.name)} is {_readable(size)} long ({note}): from {_readable(MIN_SIZE)} to "
             f"{_readable(MAX_SIZE)} would do; give --units m, cm or mm if they were misread"
         )
-    thin = _thickness(mesh.vertices) * UNITS[units]
+    mesh.apply_scale(UNITS[units])
+    thin = _thickness(mesh.vertices)
     if thin < MIN_THICKNESS:
         raise InputError(
             f"{echo(path.name)} is {_readable(thin)} thick: a solid of at least "
             f"{_readable(MIN_THICKNESS)} would do"
         )
-    mesh.apply_scale(UNITS[units])
-    mesh.merge_vertices()
     return RawMesh(mesh, units, note)
+
+
+def read_surface(path: Path) -> trimesh.Trimesh:
+    """The mesh of a file of any format in `SUFFIXES`, in the file's own units.
+
+    Raises:
+        InputError: not a file, not a mesh, empty, non-finite, flat or too large.
+    """
+    check_file(path)
+    mesh = _load(path)
+    _check_geometry(mesh, path)
+    mesh.merge_vertices()
+    return mesh
 
 
 def infer_units(longest: float, suffix: str) -> tuple[str, str]:

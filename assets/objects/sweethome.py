@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from maniskill_taskgrasp.assets.objects.importer import Origin, object_from_mesh
-from maniskill_taskgrasp.assets.objects.meshfile import RawMesh, read_mesh
+from maniskill_taskgrasp.assets.objects.meshfile import RawMesh, read_surface
 from maniskill_taskgrasp.assets.objects.model import ObjectModel
 from maniskill_taskgrasp.errors import InputError, echo
 
@@ -104,8 +104,7 @@ def import_entry(archive: Path, entry: CatalogueEntry) -> tuple[ObjectModel, tup
             # Only plain files of the model's own folder: no way out of the temporary one.
             if name.startswith(inside) and ".." not in name and not name.endswith("/"):
                 zipped.extract(name, folder)
-        raw = read_mesh(Path(folder) / entry.model, "cm")
-    mesh = raw.mesh
+        mesh = read_surface(Path(folder) / entry.model)
     turn = np.eye(4)
     turn[:3, :3] = np.array(entry.rotation).reshape(3, 3)
     mesh.apply_transform(turn)
