@@ -37,9 +37,22 @@ class HoverRule(ConstantClosing):
     """
 
     def __call__(self, obs: Tensor) -> Tensor:
-        env, action = self._env, super().__call__(obs)
-        x, y, yaw = env.shift.unbind(1)
+        action, shift = super().__call__(obs), self._shift()
+        x, y, yaw = shift.unbind(1)
         wanted = torch.stack([x, y, torch.zeros_like(x), yaw], 1)
-        arm = env.agent.controller.controllers["arm"]
+        arm = self._env.agent.controller.controllers["arm"]
         action[:, : self._num_palm] = arm.action_for(wanted)
         return action
+
+    def _shift(self) -> Tensor:
+        """(num_envs, 3) [m, m, rad] where the palm shall go, x, y and yaw off its path."""
+        shift: Tensor = self._env.shift
+        return shift
+
+
+class Oracle(HoverRule):
+    """A teacher that knows where the object is; no policy to be compared with."""
+
+    def _shift(self) -> Tensor:
+        shift: Tensor = self._env.needed_shift()
+        return shift

@@ -64,21 +64,31 @@ class OffsetModel:
         for mine, new in zip(vars(self).values(), vars(models).values(), strict=True):
             mine[env_idx] = new
 
-    def estimate(self, distances: Tensor, residual: Tensor) -> Tensor:
-        """Palm displacement that restores the planned grasp.
+    def gaps(self, distances: Tensor, residual: Tensor) -> Tensor:
+        """How far distances are from nominal, had the palm stayed on its path.
 
         Args:
             distances: (n, num_parts) [m] now.
             residual: (n, 3) [m, m, rad] how far the palm stands off its path already.
 
         Returns:
-            (n, 3) [m, m, rad] x, y and yaw about the palm's own origin.
+            (n, num_parts) [m]
         """
         x, y, yaw = residual.unbind(1)
         # The palm's displacement looks like the opposite displacement of the object.
         moved = torch.stack([x + yaw * self.hover[:, 1], y - yaw * self.hover[:, 0], yaw], 1)
-        seen = distances - self.nominal + (self.jacobian @ moved[..., None])[..., 0]
-        return following((self.gain @ seen[..., None])[..., 0], self.grasp)
+        return distances - self.nominal + (self.jacobian @ moved[..., None])[..., 0]
+
+    def shift(self, gaps: Tensor) -> Tensor:
+        """Palm displacement that restores the planned grasp.
+
+        Args:
+            gaps: (n, num_parts) [m] from `gaps`.
+
+        Returns:
+            (n, 3) [m, m, rad] x, y and yaw about the palm's own origin.
+        """
+        return following((self.gain @ gaps[..., None])[..., 0], self.grasp)
 
 
 def following(offset: Tensor, palm: Tensor) -> Tensor:

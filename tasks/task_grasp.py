@@ -57,7 +57,8 @@ EPISODE_FIELDS = (
     "pregrasp",
     "shift",
     "_true_shift",
-    "_start_height",
+    "_start_pos",
+    "_hover_gaps",
     "_distance_error",
     "_last_action",
     "_touch",
@@ -237,7 +238,8 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         self._hover = OffsetModel.blind(n, len(PARTS), device)
         self.shift = torch.zeros(n, 3, device=device)
         self._true_shift = torch.zeros(n, 3, device=device)
-        self._start_height = torch.zeros(n, device=device)
+        self._hover_gaps = torch.zeros(n, len(PARTS), device=device)
+        self._start_pos = torch.zeros(n, 3, device=device)
         self._distance_error = torch.zeros(n, len(PARTS), device=device)
         self._last_action = torch.zeros(n, self.agent.single_action_space.shape[0], device=device)
         self.outcome = Outcome(n, len(link_names), device)
@@ -256,6 +258,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         plans = self._plan(env_idx, topologies, options)
         self.pregrasp[env_idx] = plans.pregrasp
         self._hover.put(env_idx, plans.hover)
+        self._hover_gaps[env_idx] = 0.0
         self.shift[env_idx] = 0.0
         self._place_robot(env_idx, plans)
         self._place_objects(env_idx)
@@ -296,7 +299,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         self.fixture.set_pose(Pose.create(displaced(self._fixture_pose[env_idx], centre, offsets)))
         palm = palm_path(self.pregrasp[env_idx], torch.zeros_like(offsets)).grasp
         self._true_shift[env_idx] = following(offsets, palm)
-        self._start_height[env_idx] = pose[:, 2]
+        self._start_pos[env_idx] = pose[:, :3]
         errors = rng.uniform(-1, 1, size=2 * len(PARTS)).reshape(-1, 2, len(PARTS))
         low, high = DISTANCE_ERROR
         size = low + (high - low) * np.abs(errors[:, 0])
@@ -349,9 +352,21 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
 
     def _estimate_shift(self) -> None:
         """While the palm hovers, distances tell how far it must move to stand as planned."""
-        estimate = self._hover.estimate(self._sensed_distances(), self._palm_shift())
-        hovering = self._elapsed_steps < PHASE_ENDS[HOVER]
-        self.shift = torch.where(hovering[:, None], estimate, self.shift)
+        if self._distance == "none":
+            return
+        gaps = self._hover.gaps(self._sensed_distances(), self._palm_shift())
+        hovering = (self._elapsed_steps < PHASE_ENDS[HOVER])[:, None]
+        self._hover_gaps = torch.where(hovering, gaps, self._hover_gaps)
+        self.shift = torch.where(hovering, self._hover.shift(gaps), self.shift)
+
+    def needed_shift(self) -> Tensor:
+        """(num_envs, 3) [m, m, rad] palm displacement that would restore the planned grasp.
+
+        Privileged: for rewards and teachers, never observed. The object's turn counts as at the
+        start, its place as it is now.
+        """
+        pushed = self.obj.pose.p[:, :2] - self._start_pos[:, :2]
+        return self._true_shift + torch.nn.functional.pad(pushed, (0, 1))
 
     def _palm_shift(self) -> Tensor:
         """(num_envs, 3) [m, m, rad] x, y and yaw by which the palm was moved off its path."""
@@ -368,7 +383,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         return self._reading
 
     def _lift(self) -> Tensor:
-        return self.reading.height - self._start_height
+        return self.reading.height - self._start_pos[:, 2]
 
     def evaluate(self) -> dict[str, Tensor]:
         reading, lift = self.reading, self._lift()
@@ -417,6 +432,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             "extents": self._extents,
             "pregrasp": self.pregrasp,
             "shift": self.shift,
+            "hover_gaps": self._hover_gaps,
         }
 
     def _sensed_distances(self) -> Tensor:
@@ -444,7 +460,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         forces, distances = info["part_forces"], self.reading.distances
         lift = rewards.lift_term(info["lift"], LIFT_HEIGHT)
         return {
-            "centre": rewards.centre_term(self._true_shift - self._palm_shift()),
+            "centre": rewards.centre_term(self.needed_shift() - self._palm_shift()),
             "reach": rewards.reach_term(distances, named),
             "contact": rewards.contact_term(forces, named),
             "balance": rewards.balance_term(forces, opposing, named & self._finger_parts),

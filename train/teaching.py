@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import torch
 from torch import Tensor
 
+from maniskill_taskgrasp.tasks.closing import ConstantClosing, HoverRule, Oracle
 from maniskill_taskgrasp.train.ppo_agent import ActionScaler, Agent, ObsNormalizer, sample_moments
 from maniskill_taskgrasp.train.rollout import Rollout, collect, compute_advantages
 
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 LESSON_EPOCHS = 3
 LESSON_SIZE = 512  # Samples of a gradient step.
 SOLO = 0.5  # Share of the lessons from which on the pupil acts and the teacher only corrects.
+
+
+TEACHERS = {"constant": ConstantClosing, "hover-rule": HoverRule, "oracle": Oracle}
 
 
 class Teacher:

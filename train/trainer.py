@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import torch
 
-from maniskill_taskgrasp.pipeline import policy_maker
 from maniskill_taskgrasp.train import environments
 from maniskill_taskgrasp.train.checkpoint import (
     FINAL_NAME,
@@ -31,7 +30,7 @@ from maniskill_taskgrasp.train.ppo_config import PPOConfig
 from maniskill_taskgrasp.train.ppo_update import make_batch, update
 from maniskill_taskgrasp.train.rollout import Rollout, VectorEnv, collect
 from maniskill_taskgrasp.train.run_log import RunLog, note
-from maniskill_taskgrasp.train.teaching import teach
+from maniskill_taskgrasp.train.teaching import TEACHERS, teach
 
 ADAM_EPS = 1e-5
 WORKER_STREAM = 2  # Seeds of the generators that draw actions and minibatches.
@@ -174,7 +173,7 @@ class Trainer:
         """Let the network imitate the teacher before anything else, where there is one."""
         if self.config.teacher is None:
             return
-        rule = policy_maker(self.config.teacher)[0](self.envs)
+        rule = TEACHERS[self.config.teacher](self.envs)
         difference = teach(
             self.envs,
             self.agent,
