@@ -125,8 +125,8 @@ class PPOConfig:
     sim_backend: str = "auto"
     """ManiSkill's simulation back end; auto: CUDA where there is one, else the CPU."""
     teacher: Literal["constant", "hover-rule", "oracle"] | None = None
-    """TaskGrasp: rule that the network imitates before PPO starts; the oracle knows where the object
-    is, which the network must learn to tell from what it observes."""
+    """TaskGrasp: rule that the network imitates before PPO starts; the oracle knows where the
+    object is, which the network must learn to tell from what it observes."""
     teacher_lessons: int = 8
     """Rollouts of imitation."""
     teacher_logstd: float = -1.6

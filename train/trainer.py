@@ -30,7 +30,6 @@ from maniskill_taskgrasp.train.ppo_config import PPOConfig
 from maniskill_taskgrasp.train.ppo_update import make_batch, update
 from maniskill_taskgrasp.train.rollout import Rollout, VectorEnv, collect
 from maniskill_taskgrasp.train.run_log import RunLog, note
-from maniskill_taskgrasp.train.teaching import TEACHERS, teach
 
 ADAM_EPS = 1e-5
 WORKER_STREAM = 2  # Seeds of the generators that draw actions and minibatches.
@@ -173,6 +172,8 @@ class Trainer:
         """Let the network imitate the teacher before anything else, where there is one."""
         if self.config.teacher is None:
             return
+        from maniskill_taskgrasp.train.teaching import TEACHERS, teach
+
         rule = TEACHERS[self.config.teacher](self.envs)
         difference = teach(
             self.envs,
