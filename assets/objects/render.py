@@ -19,6 +19,7 @@ from maniskill_taskgrasp.assets.objects.library import load, names
 from maniskill_taskgrasp.assets.objects.model import ObjectModel, RestingPose
 from maniskill_taskgrasp.assets.objects.presentation import Presentation, present
 from maniskill_taskgrasp.assets.objects.recipe import load_recipes
+from maniskill_taskgrasp.errors import InputError
 
 if TYPE_CHECKING:
     import sapien
@@ -30,17 +31,29 @@ CARD = 300  # [pixel] edge of an object card's pictures.
 FACING = np.array([0.2, -1.0])  # Where the face of a standing thing is turned.
 VIEW = np.array([0.5, -0.66, 0.56])  # Direction from the object to the camera.
 FIELD = 0.35  # [rad] vertical field of view: long, so that shapes are hardly distorted.
+ROUND = {"non-round": "not round", "abc": "a ball"} | {x: f"round about {x}" for x in "ac"}
 SHADES = 0xFC  # Bits kept of each colour in the contact sheet: 64 shades, half the file.
 LABEL = 16  # [pixel]
 
 
 class Studio:
-    """A lit scene and a camera, to photograph one object after another."""
+    """A lit scene and a camera, to photograph one object after another.
+
+    Raises:
+        InputError: SAPIEN finds no Vulkan device.
+    """
 
     def __init__(self, pixels: int) -> None:
         import sapien
 
-        self.scene = sapien.Scene()
+        try:
+            self.scene = sapien.Scene()
+            self.camera = self.scene.add_camera("camera", pixels, pixels, FIELD, 0.01, 20)
+        except RuntimeError as error:
+            raise InputError(
+                f"no pictures here ({str(error).splitlines()[0]}): install a Vulkan driver, "
+                "see the README, Rendering"
+            ) from None
         self.scene.set_ambient_light([0.55, 0.55, 0.55])
         self.scene.add_directional_light([-0.3, 0.6, -1.0], [0.9, 0.9, 0.88], shadow=True)
         self.scene.add_directional_light([-0.8, -0.2, -0.4], [0.35, 0.35, 0.4])
@@ -49,7 +62,6 @@ class Studio:
         ground.add_box_visual(half_size=(3, 3, 0.005), material=matt)
         ground.set_initial_pose(sapien.Pose([0, 0, -0.005]))
         ground.build_static("ground")
-        self.camera = self.scene.add_camera("camera", pixels, pixels, FIELD, 0.01, 20)
 
     def photograph(self, entities: Sequence[sapien.Entity], corners: NDArray[np.float64]) -> Image:
         """(pixels, pixels, 3) picture that holds all corners (n, 3) [m]; entities are removed."""
@@ -175,7 +187,7 @@ def _numbers(model: ObjectModel) -> list[str]:
     return [
         f"{model.name} ({model.split}, {model.category}, {model.material}, {model.rigidity})",
         f"{size}, grasped {held}; {1000 * model.mass_kg:.0f} g, friction {model.friction}",
-        f"{model.affordance.shape}, round about {model.affordance.roundness}; "
+        f"{model.affordance.shape}, {ROUND[model.affordance.roundness]}; "
         f"stands that hold it: {', '.join(model.stands) or 'none'}",
         present(model).reason,
     ]
