@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from gymnasium.utils.seeding import np_random
 from mani_skill.envs.sapien_env import BaseEnv
 from mani_skill.utils import common
 from mani_skill.utils.registration import REGISTERED_ENVS, register
@@ -308,6 +309,13 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         )
 
     # State
+
+    def reset(self, seed: Any = None, options: dict | None = None) -> Any:
+        """As ManiSkill's; gymnasium's own generator is seeded as well, as its checker demands."""
+        result = super().reset(seed=seed, options=options)
+        if seed is not None:
+            self._np_random, self._np_random_seed = np_random(int(np.ravel(seed)[0]))
+        return result
 
     def _episode(self) -> dict[str, Tensor]:
         """Everything that the task remembers of the running episodes, each (num_envs, ...)."""
