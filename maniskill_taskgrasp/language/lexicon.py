@@ -1,7 +1,7 @@
 """What people call the 74 actions and the 286 objects: phrases and synonyms written for this job.
 
-`lexicon.json` is own work from everyday English; no instruction of the evaluation sets was copied into
-it, though some words were added after a set's first scoring had shown that they were missing.
+`lexicon.json` is own work from everyday English; no instruction of the evaluation sets was copied
+into it, though some words were added after a set's first scoring had shown that they were missing.
 A phrase is "verb word word|noun,noun": the words must follow the verb, and one noun, where any is
 given, must stand in the clause.
 """

@@ -141,7 +141,7 @@ def _two_words(word: str) -> str | None:
 def correct(text: str) -> tuple[str, tuple[str, ...]]:
     """Text with slips corrected, and one note for each correction."""
     notes: list[str] = []
-    words = []
+    words: list[str] = []
     for piece in text.split():
         core = piece.strip(".,!?;:'-")
         unknown = core.isascii() and core.isalpha() and core not in known_words()
