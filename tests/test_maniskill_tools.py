@@ -117,16 +117,16 @@ def test_demonstrations_are_successful_and_replayable(tmp_path):
 
 
 @pytest.mark.skipif(not rendering_available(), reason="needs a Vulkan device")
-@pytest.mark.parametrize("obs_mode", ["rgb", "depth", "pointcloud"])
+@pytest.mark.parametrize("obs_mode", ["rgb+depth", "pointcloud"])
 def test_visual_observations(obs_mode):
     env = gym.make("TaskGrasp-v0", obs_mode=obs_mode)
     obs, _ = env.reset(seed=0)
-    obs, *_ = env.step(env.action_space.sample())
     if obs_mode == "pointcloud":
         assert obs["pointcloud"]["xyzw"].shape[0] == 1
     else:
-        camera = obs["sensor_data"]["base_camera"][obs_mode]
-        assert camera.shape[:3] == (1, 128, 128) and camera.float().std() > 0
+        for kind, channels in (("rgb", 3), ("depth", 1)):
+            picture = obs["sensor_data"]["base_camera"][kind]
+            assert picture.shape == (1, 128, 128, channels) and picture.float().std() > 0
     env.close()
 
 
