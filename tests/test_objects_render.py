@@ -22,6 +22,7 @@ def pixels(path):
     return np.asarray(Image.open(path).convert("RGB"), dtype=int)
 
 
+@pytest.mark.slow
 @draws
 def test_card_shows_mesh_parts_offer_and_every_pose(tmp_path):
     """Three pictures and one a resting pose, none of them empty, above lines of numbers."""
@@ -38,6 +39,7 @@ def test_card_shows_mesh_parts_offer_and_every_pose(tmp_path):
         assert (np.abs(picture - ground).max(axis=2) > 40).mean() > 0.01, index
 
 
+@pytest.mark.slow
 @draws
 def test_contact_sheet_shows_each_object_in_its_colours(tmp_path):
     """The screwdriver's tile is red in part, the tennis ball's greenish yellow for the most."""
