@@ -43,8 +43,8 @@ class Grasp(Output):
     topology: str | None = None
     """Grasp topology to use, whatever the selector says (`taskgrasp topologies` lists them)."""
     policy: str = "constant"
-    """"constant" closes all the way; "hover-rule" first moves the palm by the distances at hover;
-    "learned" is the shipped policy; or a checkpoint file."""
+    """"constant" closes all the way; with "follow" the palm also follows the object by what is
+    sensed; "learned" is the shipped policy; or a checkpoint file."""
     episodes: int = 1
     """How many times to try."""
     seed: int = 0

@@ -95,8 +95,8 @@ class GraspOptions:
     topology: str | None = None
     """A topology that overrides the selector's choice."""
     policy: str = "constant"
-    """"constant", "hover-rule" (moves the palm by the distances at hover, then closes), "learned"
-    (the shipped policy) or a checkpoint of train/ppo.py."""
+    """"constant" (closes all the way), "follow" (the palm also follows the object by what is
+    sensed), "learned" (the shipped policy) or a checkpoint of train/ppo.py."""
     episodes: int = 1
     seed: int = 0
     noise: str = "paper"
@@ -235,7 +235,7 @@ def policy_maker(
     """Maker of a policy for an environment, and the arguments the environment must have.
 
     Args:
-        name: "constant", "hover-rule", "learned" or a checkpoint of train/ppo.py.
+        name: "constant", "follow", "hover-rule", "learned" or a checkpoint of train/ppo.py.
         distance: what the distances shall know; None leaves it to the policy.
 
     Raises:
@@ -244,12 +244,13 @@ def policy_maker(
     given = {} if distance is None else {"distance": distance}
     from functools import partial
 
-    from maniskill_taskgrasp.tasks.closing import ConstantClosing, HoverRule
+    from maniskill_taskgrasp.tasks.closing import ConstantClosing, FollowRule, HoverRule
 
     if name == "constant":
         return ConstantClosing, given
-    if name == "hover-rule":
-        return HoverRule, {"control_mode": "pd_synergy_wrist"} | given
+    rules = {"follow": FollowRule, "hover-rule": HoverRule}
+    if name in rules:
+        return rules[name], {"control_mode": "pd_synergy_wrist"} | given
     from maniskill_taskgrasp.train.policy import load_policy, policy_env_kwargs
 
     path = _shipped_policy(distance) if name == "learned" else Path(name)

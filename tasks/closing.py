@@ -29,11 +29,10 @@ class ConstantClosing:
         return action
 
 
-class HoverRule(ConstantClosing):
-    """Constant closing after the palm was moved by what the distances at hover tell.
+class FollowRule(ConstantClosing):
+    """Constant closing, while the palm follows the object as far as sensing tells where it is.
 
-    The linear rule that a learned policy must be compared with (facts: grasping, section 7). It
-    needs `pd_synergy_wrist`, and `distance` other than "none" to see anything.
+    It needs `pd_synergy_wrist`.
     """
 
     def __call__(self, obs: Tensor) -> Tensor:
@@ -50,7 +49,18 @@ class HoverRule(ConstantClosing):
         return shift
 
 
-class Oracle(HoverRule):
+class HoverRule(FollowRule):
+    """Knows what distances at hover tell, once and linearly (facts: grasping, section 7).
+
+    The rule that a learned policy must be compared with; blind where there are no distances.
+    """
+
+    def _shift(self) -> Tensor:
+        shift: Tensor = self._env.hover_shift
+        return shift
+
+
+class Oracle(FollowRule):
     """A teacher that knows where the object is; no policy to be compared with."""
 
     def _shift(self) -> Tensor:

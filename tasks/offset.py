@@ -1,172 +1,106 @@
-"""Where the object really stands: an estimate from the distances that the hovering hand senses.
+"""Where the object really stands: an extended Kalman filter over what the hand senses.
 
-Six distances are nearly linear in the object's offset (x, y, yaw) and can be solved for it (facts:
-grasping, section 7). Everything here is batched and knows nominal data and distances alone.
+The state is the object's offset from its nominal pose (x, y, yaw) and the constant error of each
+part's distance. Distances before the closing, or touch during it, update it. All is batched, and
+knows nominal data, link poses and sensed values alone (facts: grasping, section 7).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 
-import numpy as np
 import torch
-from mani_skill.utils.geometry.rotation_conversions import matrix_to_quaternion
 from torch import Tensor
 
-from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
 from maniskill_taskgrasp.agents.rotations import quat_multiply, quat_to_matrix, yaw_quat
-from maniskill_taskgrasp.agents.sawyer_ar10.agent import SawyerAR10
-from maniskill_taskgrasp.episode import CLOSE_START
+from maniskill_taskgrasp.episode import HOVER, LIFT_START, PHASE_ENDS
 from maniskill_taskgrasp.tasks.noise import NOISES
-from maniskill_taskgrasp.tasks.placement import Placement
-from maniskill_taskgrasp.tasks.sensing import HandBoxes, ObjectSurfaces, part_distances
-from maniskill_taskgrasp.tasks.surface import surface_of
 
-STEP = (0.005, 0.005, 0.08)
+STEP = (0.003, 0.003, 0.04)
 """[m, m, rad] of the central differences."""
-ERRORS = {"exact": 0.0015, "noisy": 0.0045}
-"""[m] standard deviation of a distance on each track; exact ones are off the linear model."""
 _WIDEST = NOISES["blind"]
 PRIOR_STD = tuple(w / math.sqrt(3) for w in (_WIDEST.position, _WIDEST.position, _WIDEST.yaw))
 """[m, m, rad] of the offset's uniform draws."""
+MODEL_ERROR = 0.001  # [m] what distances of surfaces in patches are off, independent each time.
+TOUCH_ERROR = 0.001  # [m] distance that a part may still have when its contact is felt.
+TOUCH_FORCE = 0.05  # [N] contact that counts as felt.
+PUSH_STD = (0.0015, 0.0015, 0.02)
+"""[m, m, rad] by which a touched object may move between two updates."""
+UNSEEN = 1.0  # [m] error of a distance that says nothing.
+LIMIT = (0.03, 0.03, 0.35)
+"""[m, m, rad] no offset is believed to be larger."""
+LOOKS = (1, 4, PHASE_ENDS[HOVER] - 1, 10, 13, 16, 19)
+"""Control steps at which distances are taken; the object is not touched before the last."""
+FEELS = tuple(range(14, LIFT_START, 2))
+"""Control steps at which touch is taken, from the middle of the descent on."""
+
+Distances = Callable[[Tensor], Tensor]
 
 
-@dataclass(frozen=True)
-class OffsetModel:
-    """Linear model of n hovering hands: distances from the object's offset, and back."""
+class OffsetFilter:
+    """Mean and covariance of every environment's offset and distance errors."""
 
-    nominal: Tensor
-    """(n, num_parts) [m] distances where nothing is off."""
-    jacobian: Tensor
-    """(n, num_parts, 3) change of the distances with the object's (x, y, yaw)."""
-    gain: Tensor
-    """(n, 3, num_parts) posterior mean of the offset for each metre of distance."""
-    hover: Tensor
-    """(n, 3) [m] palm's origin at hover, from the vertical about which the object is turned."""
-    grasp: Tensor
-    """(n, 3) [m] the same once the palm is in place."""
+    def __init__(self, num_envs: int, num_parts: int, error: float, device: torch.device) -> None:
+        """
+        Args:
+            error: [m] standard deviation of a distance's constant error.
+        """
+        std = torch.tensor([*PRIOR_STD, *[error] * num_parts], device=device)
+        self._prior = torch.diag(std.float() ** 2)
+        self._limit = torch.tensor(LIMIT, device=device)
+        self._push = torch.diag(torch.tensor([*PUSH_STD, *[0.0] * num_parts], device=device) ** 2)
+        self.mean = torch.zeros(num_envs, 3 + num_parts, device=device)
+        self.covariance = self._prior.expand(num_envs, -1, -1).clone()
 
-    @classmethod
-    def blind(cls, n: int, num_parts: int, device: torch.device) -> OffsetModel:
-        """Models that never see an offset."""
-        return cls(
-            torch.zeros(n, num_parts, device=device),
-            torch.zeros(n, num_parts, 3, device=device),
-            torch.zeros(n, 3, num_parts, device=device),
-            torch.zeros(n, 3, device=device),
-            torch.zeros(n, 3, device=device),
-        )
+    def reset(self, env_idx: Tensor) -> None:
+        """Forget what some environments have sensed."""
+        self.mean[env_idx] = 0.0
+        self.covariance[env_idx] = self._prior
 
-    def put(self, env_idx: Tensor, models: OffsetModel) -> None:
-        """Overwrite the models of environments (m,) with m others."""
-        for mine, new in zip(vars(self).values(), vars(models).values(), strict=True):
-            mine[env_idx] = new
-
-    def gaps(self, distances: Tensor, residual: Tensor) -> Tensor:
-        """How far distances are from nominal, had the palm stayed on its path.
+    def look(self, rows: Tensor, sensed: Tensor, expected: Distances) -> None:
+        """Take in distances of some environments.
 
         Args:
-            distances: (n, num_parts) [m] now.
-            residual: (n, 3) [m, m, rad] how far the palm stands off its path already.
-
-        Returns:
-            (n, num_parts) [m]
+            rows: (n,) environments.
+            sensed: (n, num_parts) [m].
+            expected: object offset (n, 3) -> distances (n, num_parts) [m] now.
         """
-        x, y, yaw = residual.unbind(1)
-        # The palm's displacement looks like the opposite displacement of the object.
-        moved = torch.stack([x + yaw * self.hover[:, 1], y - yaw * self.hover[:, 0], yaw], 1)
-        return distances - self.nominal + (self.jacobian @ moved[..., None])[..., 0]
+        bias = torch.eye(sensed.shape[1], device=sensed.device)
+        error = torch.full_like(sensed, MODEL_ERROR)
+        self._update(rows, sensed, expected, bias, error)
 
-    def shift(self, gaps: Tensor) -> Tensor:
-        """Palm displacement that restores the planned grasp.
+    def feel(self, rows: Tensor, forces: Tensor, expected: Distances) -> None:
+        """Take in which parts touch, (n, num_parts) [N]: their distance is zero."""
+        touching = forces >= TOUCH_FORCE
+        self.covariance[rows] = self.covariance[rows] + self._push
+        bias = forces.new_zeros(forces.shape[1], forces.shape[1])
+        error = torch.where(touching, TOUCH_ERROR, UNSEEN)
+        self._update(rows, torch.zeros_like(forces), expected, bias, error)
 
-        Args:
-            gaps: (n, num_parts) [m] from `gaps`.
-
-        Returns:
-            (n, 3) [m, m, rad] x, y and yaw about the palm's own origin.
-        """
-        return following((self.gain @ gaps[..., None])[..., 0], self.grasp)
-
-
-def following(offset: Tensor, palm: Tensor) -> Tensor:
-    """Palm displacement that follows an object which was moved and turned.
-
-    Args:
-        offset: (n, 3) [m, m, rad] of the object, turned about a vertical.
-        palm: (n, 3) [m] palm's origin from that vertical.
-
-    Returns:
-        (n, 3) [m, m, rad] x, y and yaw about the palm's own origin.
-    """
-    x, y = palm[:, 0], palm[:, 1]
-    cos, sin = offset[:, 2].cos(), offset[:, 2].sin()
-    carried = torch.stack([cos * x - sin * y - x, sin * x + cos * y - y], 1)
-    return torch.cat([offset[:, :2] + carried, offset[:, 2:]], 1)
-
-
-class HoverSense:
-    """Makes the offset models of planned grasps for one robot."""
-
-    def __init__(
-        self, agent: SawyerAR10, boxes: HandBoxes, links: Sequence[str], root: Tensor, error: float
+    def _update(
+        self, rows: Tensor, sensed: Tensor, expected: Distances, bias: Tensor, error: Tensor
     ) -> None:
-        """
-        Args:
-            boxes: the hand's boxes, numbered by `links`.
-            root: (7,) [m, wxyz] of the robot's root link.
-            error: [m] standard deviation of a distance.
-        """
-        self._agent = agent
-        self._kinematics = ArticulationKinematics.of(agent.robot)
-        self._links = [self._kinematics.link_index(name) for name in links]
-        self._palm = self._kinematics.link_index(agent.hand.palm_frame)
-        self._boxes = boxes
-        self._root = torch.eye(4, device=root.device)
-        self._root[:3, :3], self._root[:3, 3] = quat_to_matrix(root[3:]), root[:3]
-        self._error = error
-
-    def __call__(
-        self, path: Tensor, preshape: Tensor, placements: Sequence[Placement]
-    ) -> OffsetModel:
-        """Models of n plans.
+        """Kalman update, linear about the present mean.
 
         Args:
-            path: (n, num_steps, num_arm) [rad] arm waypoints, hover first.
-            preshape: (n, num_actuators) [rad].
-            placements: of the n objects; nominal.
+            bias: (num_parts, num_parts) how the constant errors enter what is sensed.
+            error: (n, num_parts) [m] standard deviation of each value's own error.
         """
-        device = path.device
-        hover = self._link_matrices(path[:, 0], preshape)
-        grasp = self._link_matrices(path[:, CLOSE_START - 1], preshape)
-        links = hover[:, self._links]
-        poses = torch.cat([links[..., :3, 3], matrix_to_quaternion(links[..., :3, :3])], -1)
-        surfaces = ObjectSurfaces.of([surface_of(p.model) for p in placements], device)
-        centre = torch.tensor(np.stack([p.centre for p in placements])).float().to(device)
-        rows = [np.concatenate([p.position, p.quat_wxyz]) for p in placements]
-        obj = torch.tensor(np.stack(rows)).float().to(device)
-
-        def sensed(offset: Tensor) -> Tensor:
-            moved = displaced(obj, centre, offset.expand(len(obj), 3))
-            return part_distances(poses, self._boxes, surfaces, moved)
-
-        steps = torch.tensor(STEP, device=device)
-        changes = [sensed(step) - sensed(-step) for step in torch.diag(steps)]
-        jacobian = torch.stack(changes, 2) / (2 * steps)
-        return OffsetModel(
-            nominal=sensed(torch.zeros_like(steps)),
-            jacobian=jacobian,
-            gain=posterior_gain(jacobian, self._error),
-            hover=hover[:, self._palm, :3, 3] - centre,
-            grasp=grasp[:, self._palm, :3, 3] - centre,
-        )
-
-    def _link_matrices(self, arm: Tensor, hand: Tensor) -> Tensor:
-        """(n, num_links, 4, 4) world poses of all links."""
-        qpos = self._agent.full_qpos(arm.cpu().numpy(), hand.cpu().numpy())
-        return self._root @ self._kinematics.link_matrices(torch.from_numpy(qpos).to(arm.device))
+        mean, covariance = self.mean[rows], self.covariance[rows]
+        offset = mean[:, :3]
+        steps = torch.diag(torch.tensor(STEP, device=mean.device))
+        columns = [
+            (expected(offset + step) - expected(offset - step)) / (2 * step.sum()) for step in steps
+        ]
+        model = torch.cat([torch.stack(columns, 2), bias.expand(len(rows), -1, -1)], 2)
+        surprise = sensed - expected(offset) - (bias @ mean[:, 3:, None])[..., 0]
+        spread = model @ covariance @ model.transpose(1, 2) + torch.diag_embed(error**2)
+        gain = torch.linalg.solve(spread, model @ covariance).transpose(1, 2)
+        mean = mean + (gain @ surprise[..., None])[..., 0]
+        mean[:, :3] = torch.minimum(torch.maximum(mean[:, :3], -self._limit), self._limit)
+        self.mean[rows] = mean
+        self.covariance[rows] = covariance - gain @ model @ covariance
 
 
 def displaced(pose: Tensor, centre: Tensor, offset: Tensor) -> Tensor:
@@ -184,17 +118,17 @@ def displaced(pose: Tensor, centre: Tensor, offset: Tensor) -> Tensor:
     return torch.cat([moved, quat_multiply(turn, pose[:, 3:])], 1)
 
 
-def posterior_gain(jacobian: Tensor, error: float) -> Tensor:
-    """Gain of the offset's posterior mean under Gaussian prior and error (ridge regression).
+def following(offset: Tensor, palm: Tensor) -> Tensor:
+    """Palm displacement that follows an object which was moved and turned.
 
     Args:
-        jacobian: (n, num_parts, 3).
-        error: [m] standard deviation of a distance.
+        offset: (n, 3) [m, m, rad] of the object, turned about a vertical.
+        palm: (n, 3) [m] palm's origin from that vertical.
 
     Returns:
-        (n, 3, num_parts)
+        (n, 3) [m, m, rad] x, y and yaw about the palm's own origin.
     """
-    prior = torch.diag(torch.tensor(PRIOR_STD, dtype=jacobian.dtype, device=jacobian.device) ** 2)
-    spread = jacobian @ prior @ jacobian.transpose(1, 2)
-    spread = spread + error**2 * torch.eye(spread.shape[1], device=spread.device)
-    return torch.linalg.solve(spread, jacobian @ prior).transpose(1, 2)
+    x, y = palm[:, 0], palm[:, 1]
+    cos, sin = offset[:, 2].cos(), offset[:, 2].sin()
+    carried = torch.stack([cos * x - sin * y - x, sin * x + cos * y - y], 1)
+    return torch.cat([offset[:, :2] + carried, offset[:, 2:]], 1)

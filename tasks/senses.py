@@ -34,6 +34,8 @@ class Reading:
     """(num_envs, num_parts) [m]"""
     height: Tensor
     """(num_envs,) [m] of the object's origin in the world."""
+    link_poses: Tensor
+    """(num_envs, num_links, 7) [m, wxyz] world."""
 
 
 class LinkPoses:
@@ -107,4 +109,14 @@ class HandSenses:
             forces=part_forces(forces, self._part_of_link, self._num_parts),
             distances=part_distances(link_poses, self._boxes, self._surfaces, obj_pose),
             height=obj_pose[:, 2],
+            link_poses=link_poses,
         )
+
+    def imagined(self, rows: Tensor, link_poses: Tensor, obj_pose: Tensor) -> Tensor:
+        """(n, num_parts) [m] distances of environments (n,) if their objects were elsewhere.
+
+        Args:
+            link_poses: (n, num_links, 7) [m, wxyz] world.
+            obj_pose: (n, 7) [m, wxyz] world.
+        """
+        return part_distances(link_poses, self._boxes, self._surfaces.rows(rows), obj_pose)

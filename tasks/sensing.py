@@ -103,6 +103,15 @@ class ObjectSurfaces:
             )
         )
 
+    def rows(self, index: Tensor) -> ObjectSurfaces:
+        """Surfaces of environments (n,)."""
+        num_envs = len(self.centres)
+
+        def pick(field: Tensor) -> Tensor:
+            return field.view(num_envs, -1, *field.shape[1:])[index].flatten(0, 1)
+
+        return ObjectSurfaces(self.centres[index], pick(self.middles), pick(self.patches))
+
 
 def part_distances(
     link_poses: Tensor, boxes: HandBoxes, surfaces: ObjectSurfaces, obj_pose: Tensor

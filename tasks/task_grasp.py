@@ -36,7 +36,13 @@ from maniskill_taskgrasp.tasks.arm_ik import ArmIK
 from maniskill_taskgrasp.tasks.cpu_batch import CpuBatchMixin
 from maniskill_taskgrasp.tasks.episode_state import from_rows, to_rows, unflattened
 from maniskill_taskgrasp.tasks.noise import draw_friction, draw_offsets, resolve_noise
-from maniskill_taskgrasp.tasks.offset import ERRORS, HoverSense, OffsetModel, displaced, following
+from maniskill_taskgrasp.tasks.offset import (
+    FEELS,
+    LOOKS,
+    OffsetFilter,
+    displaced,
+    following,
+)
 from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
 from maniskill_taskgrasp.tasks.phases import phase_at
 from maniskill_taskgrasp.tasks.placement import Placement, place
@@ -59,7 +65,8 @@ EPISODE_FIELDS = (
     "shift",
     "_true_shift",
     "_start_pos",
-    "_hover_gaps",
+    "hover_shift",
+    "_palm",
     "_distance_error",
     "_last_action",
     "_touch",
@@ -222,11 +229,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         limits = agent.robot.get_qlimits()[0, agent.arm_indices]
         root = Pose.create(scene.ROBOT_POSE, device=device).raw_pose[0]
         ik = ArmIK(kinematics, agent.arm_indices, agent.hand.palm_frame, limits, root)
-        sense = None
-        if self._obs == "full" and self._distance in ERRORS:
-            boxes = HandBoxes.of(agent.sensed_primitives, link_names, device)
-            sense = HoverSense(agent, boxes, link_names, root, ERRORS[self._distance])
-        self._plan_book = PlanBook(self.planner, ik, device, sense)
+        self._plan_book = PlanBook(self.planner, ik, device)
         n = self.num_envs
         tensor = lambda rows: torch.tensor(np.stack(rows), dtype=torch.float32, device=device)  # noqa: E731
         self.nominal_pose = tensor(
@@ -236,10 +239,12 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         self._extents = tensor([p.extents for p in self.placements])
         self.topology_index = torch.zeros(n, dtype=torch.long, device=device)
         self.pregrasp = torch.zeros(n, 6, device=device)
-        self._hover = OffsetModel.blind(n, len(PARTS), device)
+        error = sum(DISTANCE_ERROR) / 2 if self._distance == "noisy" else 0.0
+        self._filter = OffsetFilter(n, len(PARTS), error, device)
+        self._palm = torch.zeros(n, 3, device=device)
         self.shift = torch.zeros(n, 3, device=device)
+        self.hover_shift = torch.zeros(n, 3, device=device)
         self._true_shift = torch.zeros(n, 3, device=device)
-        self._hover_gaps = torch.zeros(n, len(PARTS), device=device)
         self._start_pos = torch.zeros(n, 3, device=device)
         self._distance_error = torch.zeros(n, len(PARTS), device=device)
         self._last_action = torch.zeros(n, self.agent.single_action_space.shape[0], device=device)
@@ -258,9 +263,10 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         )
         plans = self._plan(env_idx, topologies, options)
         self.pregrasp[env_idx] = plans.pregrasp
-        self._hover.put(env_idx, plans.hover)
-        self._hover_gaps[env_idx] = 0.0
+        self._palm[env_idx] = palm_path(plans.pregrasp, torch.zeros_like(self._palm[env_idx])).grasp
+        self._filter.reset(env_idx)
         self.shift[env_idx] = 0.0
+        self.hover_shift[env_idx] = 0.0
         self._place_robot(env_idx, plans)
         self._place_objects(env_idx)
         self._last_action[env_idx] = 0.0
@@ -298,8 +304,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         pose = displaced(self.nominal_pose[env_idx], centre, offsets)
         self.obj.set_pose(Pose.create(pose))
         self.fixture.set_pose(Pose.create(displaced(self._fixture_pose[env_idx], centre, offsets)))
-        palm = palm_path(self.pregrasp[env_idx], torch.zeros_like(offsets)).grasp
-        self._true_shift[env_idx] = following(offsets, palm)
+        self._true_shift[env_idx] = following(offsets, self._palm[env_idx])
         self._start_pos[env_idx] = pose[:, :3]
         errors = rng.uniform(-1, 1, size=2 * len(PARTS)).reshape(-1, 2, len(PARTS))
         low, high = DISTANCE_ERROR
@@ -320,8 +325,12 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
     def _episode(self) -> dict[str, Tensor]:
         """Everything that the task remembers of the running episodes, each (num_envs, ...)."""
         own = {name.removeprefix("_"): getattr(self, name) for name in EPISODE_FIELDS}
-        hover = {f"hover_{name}": field for name, field in vars(self._hover).items()}
-        return {**own, **hover, **vars(self.outcome)}
+        return {
+            **own,
+            "offset_mean": self._filter.mean,
+            "offset_covariance": self._filter.covariance,
+            **vars(self.outcome),
+        }
 
     def get_state_dict(self) -> dict[str, Any]:
         """ManiSkill's state, with what controllers and task remember of the episode."""
@@ -359,13 +368,29 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         return action
 
     def _estimate_shift(self) -> None:
-        """While the palm hovers, distances tell how far it must move to stand as planned."""
-        if self._distance == "none":
+        """Sensing tells how far the palm must move to stand to the object as planned."""
+        if self._obs != "full":
             return
-        gaps = self._hover.gaps(self._sensed_distances(), self._palm_shift())
-        hovering = (self._elapsed_steps < PHASE_ENDS[HOVER])[:, None]
-        self._hover_gaps = torch.where(hovering, gaps, self._hover_gaps)
-        self.shift = torch.where(hovering, self._hover.shift(gaps), self.shift)
+        step, reading = self._elapsed_steps, self.reading
+        times = FEELS if self._distance == "none" else LOOKS
+        rows = torch.isin(step, self._tensor_of(times)).nonzero()[:, 0]
+        if len(rows):
+            link_poses, nominal = reading.link_poses[rows], self.nominal_pose[rows]
+
+            def expected(offset: Tensor) -> Tensor:
+                pose = displaced(nominal, torch.zeros_like(offset), offset)
+                return self._senses.imagined(rows, link_poses, pose)
+
+            if self._distance == "none":
+                self._filter.feel(rows, reading.forces[rows], expected)
+            else:
+                self._filter.look(rows, self._sensed_distances()[rows], expected)
+            self.shift[rows] = following(self._filter.mean[rows, :3], self._palm[rows])
+        hovering = (step < PHASE_ENDS[HOVER])[:, None]
+        self.hover_shift = torch.where(hovering, self.shift, self.hover_shift)
+
+    def _tensor_of(self, steps: tuple[int, ...]) -> Tensor:
+        return torch.tensor(steps, device=self.device)
 
     def needed_shift(self) -> Tensor:
         """(num_envs, 3) [m, m, rad] palm displacement that would restore the planned grasp.
@@ -440,7 +465,6 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             "extents": self._extents,
             "pregrasp": self.pregrasp,
             "shift": self.shift,
-            "hover_gaps": self._hover_gaps,
         }
 
     def _sensed_distances(self) -> Tensor:

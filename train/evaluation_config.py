@@ -38,8 +38,8 @@ class EvaluateConfig:
     presentation: str = "auto"
     """How the object is offered: auto, table, stand, rail, rack or holder."""
     policy: str = "constant"
-    """"constant" closes all the way; "hover-rule" first moves the palm by the distances at hover;
-    "learned" is the shipped policy; or a checkpoint file."""
+    """"constant" closes all the way; with "follow" the palm also follows the object by what is
+    sensed; "learned" is the shipped policy; or a checkpoint file."""
     distance: str | None = None
     """What the distances know: exact, noisy or none; left out, as the policy was trained."""
     search: int = 0
