@@ -209,13 +209,13 @@ def measure_async(num_processes: int, repeats: int) -> Speed:
     """Our single environment under gymnasium's AsyncVectorEnv, one in each process."""
     before = _memory()
     envs = gym.vector.AsyncVectorEnv([_single] * num_processes)
+    space: Any = envs.action_space
     wall = []
     for repeat in range(repeats + 1):
         envs.reset(seed=repeat)
         start = time.perf_counter()
         for step in range(STEPS):
-            action = envs.action_space.low if step < CLOSE_START else envs.action_space.high
-            envs.step(action)
+            envs.step(space.low if step < CLOSE_START else space.high)
         if repeat:
             wall.append((time.perf_counter() - start) / STEPS)
     memory = _memory() - before
@@ -253,11 +253,12 @@ def measure_other(env_id: str, package: str, repeats: int) -> Speed:
     _use_cores(1)
     importlib.import_module(package)
     before = _memory()
-    kwargs = {"obs_mode": "state"} if package.startswith("mani_skill") else {}
+    kwargs: dict[str, Any] = {"obs_mode": "state"} if package.startswith("mani_skill") else {}
     env = gym.make(env_id, **kwargs)
+    base: Any = env.unwrapped
     env.action_space.seed(0)
     actions = [env.action_space.sample() for _ in range(STEPS)]
-    frequency = getattr(env.unwrapped, "control_freq", None) or 1 / env.unwrapped.dt
+    frequency = getattr(base, "control_freq", None) or 1 / base.dt
     wall, cpu = [], []
     for repeat in range(repeats + 1):
         env.reset(seed=repeat)
