@@ -44,7 +44,7 @@ class SearchBudget:
 
     generations: int
     """Most generations of the cross-entropy search; at least 1."""
-    first: int = 1
+    first: int = 2
     """Batches in the first generation, where no start is good."""
     num_envs: int = 64
     """Trials in each batch."""
