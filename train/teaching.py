@@ -29,7 +29,7 @@ class Teacher:
     def __init__(self, rule: Any, scaler: ActionScaler, agent: Agent) -> None:
         """
         Args:
-            rule: raw observations -> task actions.
+            rule: observations -> task actions; ours look at the environment instead.
             agent: the pupil; its deviation is the noise of both.
         """
         self._rule = rule
