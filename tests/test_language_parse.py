@@ -147,3 +147,10 @@ def test_what_is_meant_between_the_words(text, action, name):
     answer = parse(text)
     assert isinstance(answer, Instruction), answer
     assert (answer.action, answer.object) == (action, name)
+
+
+def test_an_object_that_was_only_held_on_the_open_palm_is_a_tool_like_any():
+    """All rows of "lazy susan" are of the open palm, which is no topology, so none is left."""
+    answer = parse("Open the box with the lazy susan.")
+    assert isinstance(answer, Instruction)
+    assert answer.object == "lazy susan"

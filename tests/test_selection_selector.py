@@ -88,6 +88,12 @@ def test_imported_object_is_ranked_without_evidence(selector):
         assert sum(strategy.probabilities) == pytest.approx(1)
 
 
+def test_a_transfer_of_any_object_is_ranked(selector):
+    """Also of the three whose rows are all of the open palm, which is no topology."""
+    for name in load_knowledge().objects:
+        assert sum(selector.rank(name, None).probabilities) == pytest.approx(1)
+
+
 def test_every_known_pair_of_names_is_ranked(selector):
     """No name of the data set is refused, floppy objects included."""
     knowledge = load_knowledge()

@@ -113,7 +113,8 @@ def _tool_bonus(clause: Clause, action: str) -> float:
     if tool is None or tool.mention is None or action in GENERIC_ACTIONS:
         return 0.0
     done = load_knowledge().actions_of(tool.mention.objects[0][0])
-    return TOOL_BONUS * done.get(action, 0) / sum(done.values()) if done else 0.0
+    total = sum(done.values())  # 0 where all its rows were of the open palm, which is no topology.
+    return TOOL_BONUS * done.get(action, 0) / total if total else 0.0
 
 
 @cache

@@ -119,7 +119,7 @@ class Selector:
         """Weights of the actions that remain possible; not normalised."""
         actions = load_knowledge().actions
         if action is None:
-            weights = {a: float(n) for a, n in load_knowledge().actions_of(obj).items()}
+            weights = {a: float(n) for a, n in load_knowledge().actions_of(obj).items() if n}
             weights = weights or _rows_of_actions()
         else:
             weights = {action: 1.0} if isinstance(action, str) else dict(action)
