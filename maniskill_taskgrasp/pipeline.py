@@ -263,7 +263,8 @@ def _search(source: str, topology: Topology, options: GraspOptions) -> FoundGras
         return None
     from maniskill_taskgrasp.tasks.own_search import SearchBudget, find_grasp
 
-    budget = SearchBudget(generations=options.search, seed=options.seed)
+    follow = options.policy != "constant"
+    budget = SearchBudget(generations=options.search, seed=options.seed, follow=follow)
     return find_grasp(source, topology, options.presentation, budget)
 
 

@@ -50,6 +50,8 @@ class SearchBudget:
     """Trials in each batch."""
     noise: str = "paper"
     seed: int = 0
+    follow: bool = False
+    """Whether the palm follows the object in the trials, as it will when the grasp is used."""
 
     def __post_init__(self) -> None:
         if self.generations < 1:

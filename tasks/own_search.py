@@ -78,7 +78,9 @@ def find_grasp(obj: str, topology: Topology, presentation: str, budget: SearchBu
 
 def search(obj: str, topology: Topology, presentation: str, budget: SearchBudget) -> FoundGrasp:
     """Search on an object, whatever was found before."""
-    trials = GraspTrials(obj, topology, presentation, budget.noise, budget.num_envs)
+    trials = GraspTrials(
+        obj, topology, presentation, budget.noise, budget.num_envs, follow=budget.follow
+    )
     try:
         result = GraspSearch(trials, topology, budget).run()
     finally:

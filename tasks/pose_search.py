@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from maniskill_taskgrasp.agents.fidelity import ContactSurfaces
 from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.episode import LIFT_START, MAX_EPISODE_STEPS
-from maniskill_taskgrasp.tasks.closing import ConstantClosing
+from maniskill_taskgrasp.tasks.closing import ConstantClosing, FollowRule
 from maniskill_taskgrasp.topology import Topology
 
 Array = NDArray[np.float64]
@@ -34,10 +34,12 @@ class GraspTrials:
         noise: str,
         num_envs: int,
         processes: int = 0,
+        follow: bool = False,
     ) -> None:
         """
         Args:
             processes: that share the physics; 0 chooses.
+            follow: the palm follows the object by exact distances, else it stays on its path.
 
         Raises:
             InputError: unknown object, presentation or noise.
@@ -50,11 +52,12 @@ class GraspTrials:
             presentation=presentation,
             noise=noise,
             reward_mode="none",
-            obs="paper",
+            obs="full" if follow else "paper",
+            control_mode="pd_synergy_wrist" if follow else "pd_synergy",
             sim_config={"scene_config": {"cpu_workers": processes}},
         ).unwrapped
         self.num_envs = num_envs
-        self._policy = ConstantClosing(self.env)
+        self._policy = (FollowRule if follow else ConstantClosing)(self.env)
         self._named = torch.tensor([p in topology.parts for p in PARTS])
         self._precise = topology.pip == "Precision" and topology.opposition == "Pad"
         env: Any = self.env

@@ -171,7 +171,8 @@ def _measure(
 
 def _searched(offer: Offer, config: EvaluateConfig) -> FoundGrasp:
     assert offer.topology is not None
-    budget = SearchBudget(generations=config.search, seed=config.seed)
+    follow = config.policy != "constant" and config.distance != "none"
+    budget = SearchBudget(generations=config.search, seed=config.seed, follow=follow)
     return find_grasp(offer.source, offer.topology, config.presentation, budget)
 
 
