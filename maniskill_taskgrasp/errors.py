@@ -29,5 +29,7 @@ def unknown_name(kind: str, value: object, known: Iterable[str], more: str) -> I
         more: where the whole list can be seen, such as "taskgrasp objects list".
     """
     close = difflib.get_close_matches(str(value).lower(), list(known), n=3, cutoff=0.6)
-    hint = f"did you mean {', '.join(map(repr, close))}? " if close else ""
-    return InputError(f"unknown {kind} {echo(value)}: {hint}({more} shows all)")
+    hint = f"{more} shows all"
+    if close:
+        hint = f"did you mean {', '.join(map(repr, close))}? ({hint})"
+    return InputError(f"unknown {kind} {echo(value)}: {hint}")
