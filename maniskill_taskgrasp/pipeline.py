@@ -263,8 +263,7 @@ def _search(source: str, topology: Topology, options: GraspOptions) -> FoundGras
         return None
     from maniskill_taskgrasp.tasks.own_search import SearchBudget, find_grasp
 
-    follow = options.policy != "constant"
-    budget = SearchBudget(generations=options.search, seed=options.seed, follow=follow)
+    budget = SearchBudget(generations=options.search, seed=options.seed, follow=True)
     return find_grasp(source, topology, options.presentation, budget)
 
 
