@@ -102,7 +102,7 @@ def _lesson(
             (error + 0.5 * value_error).backward()
             torch.nn.utils.clip_grad_norm_(agent.parameters(), 1.0)
             optimizer.step()
-            errors.append(float(error))
+            errors.append(error.item())
     last = errors[-(len(errors) // LESSON_EPOCHS) :]
     return sum(last) / len(last)
 

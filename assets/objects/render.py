@@ -47,13 +47,15 @@ class Studio:
         import sapien
 
         try:
-            self.scene = sapien.Scene()
-            self.camera = self.scene.add_camera("camera", pixels, pixels, FIELD, 0.01, 20)
+            # Asked before anything is built: half a scene without a device may crash at exit.
+            sapien.render.get_device_summary()
         except RuntimeError as error:
             raise InputError(
                 f"no pictures here ({str(error).splitlines()[0]}): install a Vulkan driver, "
                 "see the README, Rendering"
             ) from None
+        self.scene = sapien.Scene()
+        self.camera = self.scene.add_camera("camera", pixels, pixels, FIELD, 0.01, 20)
         self.scene.set_ambient_light([0.55, 0.55, 0.55])
         self.scene.add_directional_light([-0.3, 0.6, -1.0], [0.9, 0.9, 0.88], shadow=True)
         self.scene.add_directional_light([-0.8, -0.2, -0.4], [0.35, 0.35, 0.4])
