@@ -42,7 +42,7 @@ class Grasp(Output):
     """Library object or mesh file to grasp, whatever the sentence names."""
     topology: str | None = None
     """Grasp topology to use, whatever the selector says (`taskgrasp topologies` lists them)."""
-    policy: str = "constant"
+    policy: str = "follow"
     """"constant" closes all the way; with "follow" the palm also follows the object by what is
     sensed; "learned" is the shipped policy; or a checkpoint file."""
     episodes: int = 1

@@ -94,7 +94,7 @@ class GraspOptions:
     """A library object or a mesh file that overrides the sentence's object."""
     topology: str | None = None
     """A topology that overrides the selector's choice."""
-    policy: str = "constant"
+    policy: str = "follow"
     """"constant" (closes all the way), "follow" (the palm also follows the object by what is
     sensed), "learned" (the shipped policy) or a checkpoint of train/ppo.py."""
     episodes: int = 1
