@@ -17,6 +17,9 @@ from maniskill_taskgrasp.tasks.pregrasp import palm_rotation
 from maniskill_taskgrasp.topology import resolve_topology
 
 CLEARANCE = 0.004  # [m] between the table and the fingers' deepest point while they close.
+CANDIDATES = 4  # Grasps of which the first that the arm can reach is taken.
+Candidate = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
+"""Pregrasp (6,), preshape and closing (num_actuators,)."""
 SWEEP = 6  # Instants of the closing at which the fingers' depth is taken.
 
 
@@ -40,20 +43,18 @@ class PregraspPlanner:
         self._kinematics = kinematics
         self._sweeps: dict[str, Tensor] = {}
 
-    def plan(
-        self, slug: str, placement: Placement
-    ) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-        """Pregrasp (6,), preshape and closing (num_actuators,) of a topology for a placed object.
+    def candidates(self, slug: str, placement: Placement) -> list[Candidate]:
+        """`CANDIDATES` grasps of a topology for a placed object, the most promising first.
 
-        The stored grasp that suits the object best; where the topology has none, the rule of
-        `bounding_box` with the hand's own posture.
+        The stored grasps that suit the object best, then the rule of `bounding_box` with the
+        hand's own posture.
         """
-        stored = nearest_grasps(self._hand, resolve_topology(slug), placement)
-        if stored:
-            return stored[0].pregrasp, stored[0].preshape, stored[0].closing
-        posture = self._hand.postures[slug]
+        topology, posture = resolve_topology(slug), self._hand.postures[slug]
+        stored = nearest_grasps(self._hand, topology, placement, CANDIDATES - 1)
         rule = tuple(self.bounding_box(slug, placement).tolist())
-        return rule, posture.preshape, posture.closing
+        found = [(grasp.pregrasp, grasp.preshape, grasp.closing) for grasp in stored]
+        found += [(rule, posture.preshape, posture.closing)] * (CANDIDATES - len(found))
+        return found
 
     def bounding_box(self, slug: str, placement: Placement) -> Tensor:
         """Pregrasp from the object's box: its centre at the posture's grasp centre, palm raised

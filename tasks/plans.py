@@ -9,7 +9,7 @@ from torch import Tensor
 
 from maniskill_taskgrasp.tasks.arm_ik import ArmIK
 from maniskill_taskgrasp.tasks.placement import Placement
-from maniskill_taskgrasp.tasks.planner import PregraspPlanner
+from maniskill_taskgrasp.tasks.planner import CANDIDATES, PregraspPlanner
 from maniskill_taskgrasp.tasks.pregrasp import palm_path
 from maniskill_taskgrasp.topology import Topology
 
@@ -34,7 +34,7 @@ class PlanBook:
     """Plans from nominal data. Noise is drawn afterwards, so a plan serves all episodes."""
 
     def __init__(self, planner: PregraspPlanner, ik: ArmIK, device: torch.device) -> None:
-        self._planner = planner
+        self._candidates = planner.candidates
         self._ik = ik
         self._device = device
         self._kept: dict[tuple[str, int], Plans] = {}
@@ -49,11 +49,15 @@ class PlanBook:
         keys = [(t.slug, int(env)) for env, t in zip(env_idx, topologies, strict=True)]
         missing = [key for key in keys if key not in self._kept]
         if missing:
-            grasps = [self._planner.plan(slug, placements[env]) for slug, env in missing]
+            grasps = [g for slug, env in missing for g in self._candidates(slug, placements[env])]
             rows = [torch.tensor(row, device=self._device) for row in zip(*grasps, strict=True)]
-            made = self.custom([placements[env] for _, env in missing], *rows)
+            owners = [placements[env] for _, env in missing for _ in range(CANDIDATES)]
+            made = self.custom(owners, *rows)
+            # argmax: the first that the arm can reach, or the first of all.
+            best = made.reachable.view(-1, CANDIDATES).int().argmax(1).tolist()
             for i, key in enumerate(missing):
-                self._kept[key] = Plans(*(field[i : i + 1] for field in vars(made).values()))
+                row = i * CANDIDATES + best[i]
+                self._kept[key] = Plans(*(field[row : row + 1] for field in vars(made).values()))
         found = [vars(self._kept[key]) for key in keys]
         return Plans(*(torch.cat([f[name] for f in found]) for name in found[0]))
 
