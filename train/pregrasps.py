@@ -9,7 +9,7 @@ import itertools
 import json
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -24,11 +24,13 @@ from maniskill_taskgrasp.assets.objects.store import write_atomically
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.selection.feasibility import feasible
+from maniskill_taskgrasp.tasks.closing import ConstantClosing
 from maniskill_taskgrasp.tasks.grasp_library import Grasp, dump_grasps
 from maniskill_taskgrasp.tasks.grasp_search import GraspSearch, SearchBudget, SearchResult
 from maniskill_taskgrasp.tasks.placement import place
 from maniskill_taskgrasp.tasks.pose_search import GraspTrials
 from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
+from maniskill_taskgrasp.train.batched_episodes import Conditions, Job, run_jobs
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 
@@ -54,6 +56,9 @@ class PregraspConfig:
     """Searches at a time."""
     noise: str = "paper"
     seed: int = 0
+    remeasure: bool = False
+    """Search nothing: measure what the library holds again, in `remeasure_trials` fresh trials."""
+    remeasure_trials: int = 32
     out: Path = ASSETS / "pregrasps.json"
     """Library to add to."""
 
@@ -132,6 +137,9 @@ def main(config: PregraspConfig) -> None:
     done: list[Grasp] = []
     if config.out.exists():
         done = [Grasp(**row) for row in json.loads(config.out.read_text("utf-8"))]
+    if config.remeasure:
+        write_atomically(config.out, dump_grasps(remeasured(done, config)).encode())
+        return
     have = {(grasp.topology, grasp.obj) for grasp in done}
     todo = [(t, obj) for t, obj in pairs(config) if (t.slug, obj) not in have]
     # Spawned, not forked: a simulation that was built before a fork is no good after it.
@@ -148,6 +156,33 @@ def main(config: PregraspConfig) -> None:
                 write_atomically(config.out, dump_grasps(done).encode())
                 bar.update()
                 bar.write(_line(topology, result))
+
+
+def remeasured(grasps: list[Grasp], config: PregraspConfig) -> list[Grasp]:
+    """The same grasps with what they do today."""
+    conditions = Conditions(
+        episodes=config.remeasure_trials,
+        noise=config.noise,
+        presentation=config.presentation,
+        seed=config.seed,
+        num_envs=2 * config.num_envs,
+        make_policy=ConstantClosing,
+        env_kwargs={"obs": "paper"},
+    )
+    by_slug = {topology.slug: topology for topology in TOPOLOGIES}
+    jobs = [Job(by_slug[g.topology], g.obj, g.obj, grasp=g) for g in grasps]
+    size = max(1, conditions.num_envs // config.remeasure_trials)
+    found = []
+    for first in tqdm(range(0, len(jobs), size), unit="batch"):
+        for grasp, episodes in zip(
+            grasps[first : first + size],
+            run_jobs(jobs[first : first + size], conditions),
+            strict=True,
+        ):
+            held = np.logical_and(episodes.lifted, episodes.in_form)
+            lift, both = (round(float(np.mean(x)), 4) for x in (episodes.lifted, held))
+            found.append(replace(grasp, lift=lift, both=both, trials=len(episodes)))
+    return found
 
 
 def _line(topology: Topology, result: SearchResult) -> str:
