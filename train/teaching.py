@@ -9,7 +9,8 @@ from torch import Tensor
 
 from maniskill_taskgrasp.tasks.closing import ConstantClosing, FollowRule, Oracle
 from maniskill_taskgrasp.train.ppo_agent import ActionScaler, Agent, ObsNormalizer, sample_moments
-from maniskill_taskgrasp.train.rollout import Rollout, collect, compute_advantages
+from maniskill_taskgrasp.train.ppo_update import make_batch
+from maniskill_taskgrasp.train.rollout import Rollout, collect
 
 if TYPE_CHECKING:
     from maniskill_taskgrasp.train.ppo_config import PPOConfig
@@ -90,9 +91,10 @@ def _lesson(
     config: PPOConfig,
 ) -> float:
     """Go over everything seen so far; returns of old rollouts are taken with today's values."""
-    obs = torch.cat([normalizer(rollout.obs).flatten(0, 1) for rollout in rollouts])
+    batches = [make_batch(rollout, agent, normalizer, config) for rollout in rollouts]
+    obs = torch.cat([batch.obs for batch in batches])
+    returns = torch.cat([batch.returns for batch in batches])
     wanted = torch.cat(advice)
-    returns = torch.cat([_returns(agent, normalizer, rollout, config) for rollout in rollouts])
     errors = []
     for _ in range(LESSON_EPOCHS):
         for index in torch.randperm(len(obs), device=obs.device).split(LESSON_SIZE):
@@ -105,23 +107,3 @@ def _lesson(
             errors.append(error.item())
     last = errors[-(len(errors) // LESSON_EPOCHS) :]
     return sum(last) / len(last)
-
-
-@torch.no_grad()
-def _returns(
-    agent: Agent, normalizer: ObsNormalizer, rollout: Rollout, config: PPOConfig
-) -> Tensor:
-    """(samples,) generalised returns under the pupil's present values."""
-    values = agent.value(normalizer(rollout.obs))
-    advantages = compute_advantages(
-        rollout.rewards * config.reward_scale,
-        values,
-        agent.value(normalizer(rollout.next_obs)),
-        rollout.dones,
-        rollout.terminated,
-        gamma=config.gamma,
-        gae_lambda=config.gae_lambda,
-        bootstrap=config.bootstrap_at_done,
-        finite_horizon=config.finite_horizon_gae,
-    )
-    return (advantages + values).flatten()
