@@ -14,7 +14,7 @@ from maniskill_taskgrasp.agents.rotations import (
     rotation_vector,
     yaw_quat,
 )
-from maniskill_taskgrasp.agents.sawyer_ar10.description import SAWYER_AR10
+from maniskill_taskgrasp.agents.sawyer_ar10.description import SAWYER_AR10, SIMULATED
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.agents.sawyer_ar10.model import Joint, Link, Robot
 
@@ -151,11 +151,13 @@ def test_loaded_and_described_robot_agree():
     theirs = loaded.link_matrices(qpos[:, order])
     ours = described.link_matrices(qpos)
     for link in described.link_names:
-        found, expected = theirs[:, loaded.link_index(link)], ours[:, described.link_index(link)]
+        carrier, at = SIMULATED.frames[link]
+        found = theirs[:, loaded.link_index(carrier)] @ torch.tensor(at, dtype=torch.float32)
+        expected = ours[:, described.link_index(link)]
         torch.testing.assert_close(found, expected, atol=1e-5, rtol=0)
     robot.set_qpos(qpos[:1, order])
-    simulated = robot.links_map["thumb_tip"].pose.p
-    found = theirs[:1, loaded.link_index("thumb_tip"), :3, 3]
+    simulated = robot.links_map["thumb_distal"].pose.p
+    found = theirs[:1, loaded.link_index("thumb_distal"), :3, 3]
     torch.testing.assert_close(found, simulated, atol=1e-5, rtol=0)
 
 

@@ -1,26 +1,28 @@
 """Writes the robot's files: `python -m maniskill_taskgrasp.agents.sawyer_ar10.build [FOLDER]`.
 
 Two URDF files share one tree: the full one, and one without visuals for machines that have no
-Vulkan device, where stock SAPIEN cannot load any. The output depends on nothing but the code.
+Vulkan device, where stock SAPIEN cannot load any. Links that cannot move against each other are one
+(`fuse`). The output depends on nothing but the code.
 """
 
 from __future__ import annotations
 
 import sys
+from collections import defaultdict
 from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from maniskill_taskgrasp.agents.sawyer_ar10.description import SAWYER_AR10
+from maniskill_taskgrasp.agents.sawyer_ar10.description import SIMULATED
+from maniskill_taskgrasp.agents.sawyer_ar10.fuse import Fusion, Transform
 from maniskill_taskgrasp.agents.sawyer_ar10.model import (
     Box,
     Inertia,
     Joint,
     Link,
     Primitive,
-    Robot,
-    Vec3,
+    rpy_of,
 )
 from maniskill_taskgrasp.agents.sawyer_ar10.visuals import link_meshes, mesh_files
 
@@ -38,7 +40,7 @@ def _vector(values: Sequence[float]) -> str:
     return " ".join(_number(value) for value in values)
 
 
-def _origin(parent: ET.Element, xyz: Vec3, rpy: Vec3) -> None:
+def _origin(parent: ET.Element, xyz: Sequence[float], rpy: Sequence[float]) -> None:
     ET.SubElement(parent, "origin", xyz=_vector(xyz), rpy=_vector(rpy))
 
 
@@ -63,12 +65,17 @@ def _add_collision(element: ET.Element, primitive: Primitive) -> None:
         ET.SubElement(geometry, "cylinder", radius=radius, length=length)
 
 
-def _add_link(robot: ET.Element, link: Link, mesh: str | None) -> None:
+def _add_visual(element: ET.Element, mesh: str, pose: Transform) -> None:
+    visual = ET.SubElement(element, "visual")
+    _origin(visual, pose[:3, 3].tolist(), rpy_of(pose[:3, :3]))
+    ET.SubElement(ET.SubElement(visual, "geometry"), "mesh", filename=mesh)
+
+
+def _add_link(robot: ET.Element, link: Link, meshes: Sequence[tuple[str, Transform]]) -> None:
     element = ET.SubElement(robot, "link", name=link.name)
     _add_inertia(element, link.inertia or FRAME_INERTIA)
-    if mesh is not None:
-        visual = ET.SubElement(element, "visual")
-        ET.SubElement(ET.SubElement(visual, "geometry"), "mesh", filename=mesh)
+    for mesh, pose in meshes:
+        _add_visual(element, mesh, pose)
     for primitive in link.collisions:
         _add_collision(element, primitive)
 
@@ -85,12 +92,21 @@ def _add_joint(robot: ET.Element, joint: Joint) -> None:
     ET.SubElement(element, "limit", {name: _number(getattr(joint, name)) for name in limits})
 
 
-def urdf(robot: Robot, meshes: dict[str, str]) -> str:
-    """URDF text; `meshes` maps a link to its visual mesh, relative to the file."""
-    root = ET.Element("robot", name=robot.name)
-    for link in robot.links:
-        _add_link(root, link, meshes.get(link.name))
-    for joint in robot.joints:
+def urdf(fusion: Fusion, meshes: dict[str, str]) -> str:
+    """URDF text of a fused robot.
+
+    Args:
+        fusion: the robot, and where its original links are.
+        meshes: original link -> its visual mesh, relative to the file.
+    """
+    drawn: dict[str, list[tuple[str, Transform]]] = defaultdict(list)
+    for original, mesh in meshes.items():
+        carrier, pose = fusion.frames[original]
+        drawn[carrier].append((mesh, pose))
+    root = ET.Element("robot", name=fusion.robot.name)
+    for link in fusion.robot.links:
+        _add_link(root, link, drawn[link.name])
+    for joint in fusion.robot.joints:
         _add_joint(root, joint)
     ET.indent(root)
     return f'<?xml version="1.0"?>\n{ET.tostring(root, encoding="unicode")}\n'
@@ -105,18 +121,18 @@ def _write(path: Path, content: bytes) -> None:
 def build(folder: Path) -> None:
     """Write both URDF files and the visual meshes into `folder`, which is made if absent."""
     folder.mkdir(parents=True, exist_ok=True)
-    robot = SAWYER_AR10
     (folder / MESHES).mkdir(exist_ok=True)
     for name, content in mesh_files().items():
         _write(folder / MESHES / f"{name}.glb", content)
     meshes = {link: f"{MESHES}/{mesh}.glb" for link, mesh in link_meshes().items()}
-    _write(folder / f"{robot.name}.urdf", urdf(robot, meshes).encode())
-    _write(folder / f"{robot.name}_collision.urdf", urdf(robot, {}).encode())
+    name = SIMULATED.robot.name
+    _write(folder / f"{name}.urdf", urdf(SIMULATED, meshes).encode())
+    _write(folder / f"{name}_collision.urdf", urdf(SIMULATED, {}).encode())
 
 
 def default_folder() -> Path:
     """Where the shipped files live."""
-    return Path(str(files("maniskill_taskgrasp.assets"))) / "robots" / SAWYER_AR10.name
+    return Path(str(files("maniskill_taskgrasp.assets"))) / "robots" / SIMULATED.robot.name
 
 
 if __name__ == "__main__":

@@ -71,6 +71,12 @@ class Inertia:
     xz: float = 0.0
     yz: float = 0.0
 
+    @classmethod
+    def of_matrix(cls, mass: float, com: Vec3, tensor: NDArray[np.float64]) -> Inertia:
+        """From a symmetric inertia tensor (3, 3) [kg m^2]."""
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = tensor.tolist()
+        return cls(mass=mass, com=com, xx=xx, yy=yy, zz=zz, xy=xy, xz=xz, yz=yz)
+
     def matrix(self) -> NDArray[np.float64]:
         """(3, 3) [kg m^2] symmetric inertia tensor."""
         return np.array(
@@ -142,6 +148,16 @@ def rotation(rpy: Sequence[float]) -> NDArray[np.float64]:
     )
 
 
+def rpy_of(turn: NDArray[np.float64]) -> Vec3:
+    """Fixed-axis angles [rad] of a rotation (3, 3): what `rotation` makes it from."""
+    turn = np.round(turn, 12) + 0.0  # Else the last bit decides between pi and -pi.
+    flat = math.hypot(turn[0, 0], turn[1, 0])
+    pitch = math.atan2(-turn[2, 0], flat)
+    if flat < 1e-9:  # Roll and yaw turn about the same axis.
+        return math.atan2(-turn[1, 2], turn[1, 1]), pitch, 0.0
+    return math.atan2(turn[2, 1], turn[2, 2]), pitch, math.atan2(turn[1, 0], turn[0, 0])
+
+
 def inertia_of_primitives(mass: float, com: Vec3, primitives: Sequence[Primitive]) -> Inertia:
     """Inertia of a body of even density made of `primitives`, carried over to a given `com`.
 
@@ -157,13 +173,4 @@ def inertia_of_primitives(mass: float, com: Vec3, primitives: Sequence[Primitive
         turn = rotation(primitive.rpy)
         tensor += part_mass * turn @ primitive.unit_inertia() @ turn.T
         tensor += part_mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    return Inertia(
-        mass=mass,
-        com=com,
-        xx=float(tensor[0, 0]),
-        yy=float(tensor[1, 1]),
-        zz=float(tensor[2, 2]),
-        xy=float(tensor[0, 1]),
-        xz=float(tensor[0, 2]),
-        yz=float(tensor[1, 2]),
-    )
+    return Inertia.of_matrix(mass, com, tensor)
