@@ -31,6 +31,7 @@ STARTS = 11  # Stored grasps that are tried first.
 SCOOP = np.array([0.0, -0.018, 0.0, 0.25, 0.0, 0.0])  # Palm lower, fingers down: facts, 3.
 GOOD_START = 0.5  # Share of trials in lift and form from which a search stays near its start.
 NEAR, WIDE = 0.4, 1.0  # Spread of the first generation around a good and a poor start.
+FINALISTS = 8  # Candidates that are tried again after a wide search.
 RIVALS = 3  # Poor starts that share the first generation.
 PROVEN = 0.95  # Share of trials in lift and form at which a start needs no search.
 HOPELESS = 2.5  # Score below which nothing was even lifted.
@@ -59,8 +60,14 @@ class SearchBudget:
 
     @property
     def trials(self) -> int:
-        """Most simulated grasps: starts, a check of the best, generations, the final choice."""
-        return self.num_envs * (self.generations + self.first + 2)
+        """Most simulated grasps: starts, a check of the best, wide search, its finalists, search
+        about the winner, the final choice."""
+        return self.num_envs * (self.generations + self.first + self.narrow + 3)
+
+    @property
+    def narrow(self) -> int:
+        """Most generations of the search about one good grasp."""
+        return math.ceil(self.generations / 2)
 
 
 @dataclass(frozen=True)
@@ -107,8 +114,8 @@ class GraspSearch:
         lifted, held, _ = self._try(np.tile(best, (self._budget.num_envs, 1)), whole=True)
         if held.mean() < PROVEN:
             good = both[row == order[0]].mean() >= GOOD_START and held.mean() >= GOOD_START
-            refined = self._refine(starts[order[: 1 if good else RIVALS]], good)
-            best, lifted, held = self._better(best, refined)
+            centre = best if good else self._finalist(self._wide(starts[order[:RIVALS]]))
+            best, lifted, held = self._better(best, self._narrow(centre))
         return SearchResult(
             self._grasp(best, lifted, held),
             names[order[0]],
@@ -139,19 +146,42 @@ class GraspSearch:
         seed = self._budget.seed + SEED_STEP * self._batches
         return self._trials.run(candidates[:, :6], *shapes, seed, whole=whole)
 
-    def _refine(self, starts: Array, good: bool) -> Array:
-        refined, _ = cross_entropy(
-            lambda candidates: self._try(candidates, whole=good)[2],
+    def _wide(self, starts: Array) -> Array:
+        """(FINALISTS, 14) from several poor starts: where the search came to, the best it met."""
+        mean, history = cross_entropy(
+            lambda candidates: self._try(candidates, whole=False)[2],
             starts,
-            self._space(NEAR if good else WIDE),
+            self._space(WIDE),
             np.random.default_rng(self._budget.seed),
             population=self._budget.num_envs,
-            generations=math.ceil(self._budget.generations / (2 if good else 1)),
-            first=1 if good else self._budget.first,
+            generations=self._budget.generations,
+            first=self._budget.first,
             enough=ENOUGH,
             hopeless=HOPELESS,
         )
-        return refined
+        order = np.argsort(-history[:, -1], kind="stable")[: FINALISTS - 1]
+        return np.concatenate([mean[None], history[order, :-1]])
+
+    def _finalist(self, finalists: Array) -> Array:
+        """The best of some candidates in fresh trials of all the time there is.
+
+        Between narrow basins the mean of good grasps is none, and one lucky trial proves nothing.
+        """
+        row = np.arange(self._budget.num_envs) % len(finalists)
+        score = self._try(finalists[row], whole=True)[2]
+        return finalists[np.argmax([score[row == i].mean() for i in range(len(finalists))])]
+
+    def _narrow(self, centre: Array) -> Array:
+        """Where a search about one grasp comes to."""
+        return cross_entropy(
+            lambda candidates: self._try(candidates, whole=True)[2],
+            centre[None],
+            self._space(NEAR),
+            np.random.default_rng(self._budget.seed + 1),
+            population=self._budget.num_envs,
+            generations=self._budget.narrow,
+            enough=ENOUGH,
+        )[0]
 
     def _better(self, start: Array, refined: Array) -> tuple[Array, Array, Array]:
         """The better of two in fresh trials, half of them each: numbers, lifted, in form."""

@@ -56,6 +56,10 @@ class PregraspConfig:
     """Searches at a time."""
     noise: str = "paper"
     seed: int = 0
+    follow: bool = True
+    """Whether the palm follows the object by exact distances, as it does where grasps are used."""
+    again: float = 0.0
+    """Search once more for stored grasps that lift in form in less than this share of trials."""
     remeasure: bool = False
     """Search nothing: measure what the library holds again, in `remeasure_trials` fresh trials."""
     remeasure_trials: int = 32
@@ -118,7 +122,13 @@ def pairs(config: PregraspConfig) -> Iterator[tuple[Topology, str]]:
 def search(topology: Topology, obj: str, config: PregraspConfig, done: list[Grasp]) -> SearchResult:
     """Search one pair, starting from what was found for others."""
     trials = GraspTrials(
-        obj, topology, config.presentation, config.noise, config.num_envs, processes=1
+        obj,
+        topology,
+        config.presentation,
+        config.noise,
+        config.num_envs,
+        processes=1,
+        follow=config.follow,
     )
     budget = SearchBudget(
         generations=config.generations,
@@ -126,6 +136,7 @@ def search(topology: Topology, obj: str, config: PregraspConfig, done: list[Gras
         num_envs=config.num_envs,
         noise=config.noise,
         seed=config.seed,
+        follow=config.follow,
     )
     try:
         return GraspSearch(trials, topology, budget, done).run()
@@ -140,8 +151,7 @@ def main(config: PregraspConfig) -> None:
     if config.remeasure:
         write_atomically(config.out, dump_grasps(remeasured(done, config)).encode())
         return
-    have = {(grasp.topology, grasp.obj) for grasp in done}
-    todo = [(t, obj) for t, obj in pairs(config) if (t.slug, obj) not in have]
+    todo = _todo(config, done)
     # Spawned, not forked: a simulation that was built before a fork is no good after it.
     with ProcessPoolExecutor(config.processes, mp_context=get_context("spawn")) as pool:
         waiting: dict[Future[SearchResult], Topology] = {}
@@ -152,10 +162,25 @@ def main(config: PregraspConfig) -> None:
                 waiting[pool.submit(search, topology, obj, config, done)] = topology
             for future in wait(waiting, return_when=FIRST_COMPLETED).done:
                 topology, result = waiting.pop(future), future.result()
-                done.append(result.grasp)
+                done = _with(done, result.grasp)
                 write_atomically(config.out, dump_grasps(done).encode())
                 bar.update()
                 bar.write(_line(topology, result))
+
+
+def _todo(config: PregraspConfig, done: list[Grasp]) -> list[tuple[Topology, str]]:
+    """What to search: stored pairs that are poor, then pairs that are not stored."""
+    have = {(grasp.topology, grasp.obj) for grasp in done}
+    poor = [(resolve_topology(g.topology), g.obj) for g in done if g.both < config.again]
+    return poor + [(t, obj) for t, obj in pairs(config) if (t.slug, obj) not in have]
+
+
+def _with(grasps: list[Grasp], found: Grasp) -> list[Grasp]:
+    """The library with a grasp that was found, where it beats what was there for its pair."""
+    rivals = [g for g in grasps if (g.topology, g.obj) == (found.topology, found.obj)]
+    if any((g.both, g.lift) >= (found.both, found.lift) for g in rivals):
+        return grasps
+    return [g for g in grasps if g not in rivals] + [found]
 
 
 def remeasured(grasps: list[Grasp], config: PregraspConfig) -> list[Grasp]:
