@@ -156,7 +156,7 @@ def _make(num_envs: int, processes: int) -> Any:
 def _sections(base: Any, acts: list[torch.Tensor]) -> dict[str, float]:
     """Shares of env.step over one episode: physics, reading the state, sensing, reward, the rest.
 
-    "physics" is the time inside SAPIEN's `step`.
+    "physics" is the time inside SAPIEN's `step`, "state" that of drive targets and packed states.
     """
     watch = Stopwatch()
     for name, section in (
@@ -171,19 +171,18 @@ def _sections(base: Any, acts: list[torch.Tensor]) -> dict[str, float]:
     groups = [share.local for share in base.scene.px._shares] if base.gpu_sim_enabled else []
     for group in groups:
         watch.wrap(group, "advance", "state")
+        watch.wrap(group, "run_physics", "physics")
+        watch.wrap(group._contacts, "stepped", "contacts")
+        watch.wrap(group._contacts, "table", "contacts")
     if not groups:
         watch.wrap(base.scene, "step", "physics")
     base.reset(seed=1)
     watch.clear()
-    before = sum(group.physics_seconds for group in groups)
     for step in range(STEPS):
         base.step(acts[step >= CLOSE_START])
-    seconds = dict(watch.seconds)
-    if groups:
-        inside = sum(group.physics_seconds for group in groups) - before
-        seconds["physics"], seconds["state"] = inside, seconds["state"] - inside
-    total = sum(seconds.values())
-    return {name: value / total for name, value in sorted(seconds.items(), key=lambda p: -p[1])}
+    total = sum(watch.seconds.values())
+    shares = {name: value / total for name, value in watch.seconds.items()}
+    return dict(sorted(shares.items(), key=lambda pair: -pair[1]))
 
 
 def _bare_physics(base: Any, acts: list[torch.Tensor], repeats: int) -> list[float]:

@@ -28,6 +28,9 @@ class ContactTable:
         self._row_env: list[int] = []
         self._watched = np.zeros(len(systems), dtype=bool)
         self._void = np.zeros(len(systems), dtype=bool)
+        self._found = _Found()
+        self._complete = False  # All that is watched was looked at since the last step.
+        self._asked = self._eager = False
         self._table: np.ndarray | None = None
 
     def add_pair(self, first: Any, second: Any) -> tuple[int, int]:
@@ -49,13 +52,23 @@ class ContactTable:
     def _new_slot(self, body: Any) -> int:
         self._row_env.append(self._env_of[body])
         self._watched[self._env_of[body]] = True
+        self._complete = False
         self._table = None
         return 2 * (len(self._row_env) - 1)
 
-    def stepped(self) -> None:
-        """A physics step has passed: everything known is out of date."""
+    def stepping(self) -> None:
+        """A physics step comes: everything known is out of date."""
+        # Who asked after the last step will ask after this one.
+        self._eager, self._asked = self._asked, False
+        self._complete = self._eager
+        self._found = _Found()
         self._table = None
         self._void[:] = False
+
+    def stepped(self, env: int) -> None:
+        """An environment has been stepped: look at its contacts, if anybody is going to ask."""
+        if self._eager and self._watched[env]:
+            self._look(env)
 
     def clear(self, envs: Sequence[int]) -> None:
         """These environments are put into a new state: their contacts are void until a step."""
@@ -65,47 +78,61 @@ class ContactTable:
 
     def table(self) -> np.ndarray:
         """(rows, 3) [Ns] impulses of the last physics step."""
+        self._asked = True
+        if not self._complete:
+            self._found = _Found()
+            for env in np.nonzero(self._watched & ~self._void)[0].tolist():
+                self._look(env)
+            self._complete = True
         if self._table is None:
-            self._table = self._read()
+            self._table = self._found.sums(len(self._row_env))
+            self._table[self._void[self._row_env]] = 0.0
         return self._table
 
-    def _read(self) -> np.ndarray:
-        found = self._find()
-        num_rows = len(self._row_env)
-        table = np.zeros((num_rows, 3), dtype=np.float32)
-        if not found:
-            return table
-        impulses: list[np.ndarray] = []
-        starts: list[int] = []  # First point of each contact.
-        for _, points in found:
-            starts.append(len(impulses))
-            impulses += [point.impulse for point in points]
-        sums = np.add.reduceat(np.concatenate(impulses).reshape(-1, 3), starts, axis=0)
-        slots = [slot for hit, _ in found for slot in hit]
-        weights = np.repeat(sums, [len(hit) for hit, _ in found], axis=0)
-        for axis in range(3):
-            signed = np.bincount(slots, weights[:, axis], minlength=2 * num_rows)
-            table[:, axis] = signed[0::2] - signed[1::2]
-        return table
-
-    def _find(self) -> list[tuple[tuple[int, ...], list[Any]]]:
-        """Slots and points of every contact that somebody asked about.
+    def _look(self, env: int) -> None:
+        """Find the contacts of an environment that somebody asked about.
 
         Runs over all contacts every step, most of which nobody asked about: reject those fast.
         """
-        found = []
-        pair_slots, body_slots = self._pair_slots, self._body_slots
-        for env in np.nonzero(self._watched & ~self._void)[0].tolist():
-            for contact in self._systems[env].get_contacts():
-                first, second = contact.bodies
-                partners = pair_slots.get(first)
-                slot = partners.get(second) if partners else None
-                hit: tuple[int, ...] = () if slot is None else (slot,)
-                if body_slots:
-                    if (own := body_slots.get(first)) is not None:
-                        hit = (*hit, own)
-                    if (own := body_slots.get(second)) is not None:
-                        hit = (*hit, own + 1)
-                if hit and (points := contact.points):
-                    found.append((hit, points))
-        return found
+        pair_slots, body_slots, found = self._pair_slots, self._body_slots, self._found
+        for contact in self._systems[env].get_contacts():
+            first, second = contact.bodies
+            partners = pair_slots.get(first)
+            slot = partners.get(second) if partners else None
+            hit: tuple[int, ...] = () if slot is None else (slot,)
+            if body_slots:
+                if (own := body_slots.get(first)) is not None:
+                    hit = (*hit, own)
+                if (own := body_slots.get(second)) is not None:
+                    hit = (*hit, own + 1)
+            if hit and (points := contact.points):
+                found.add(hit, points)
+
+
+class _Found:
+    """Contacts that were asked about, after one step."""
+
+    def __init__(self) -> None:
+        self._impulses: list[np.ndarray] = []
+        self._starts: list[int] = []  # First point of each contact.
+        self._hits: list[tuple[int, ...]] = []  # Slots that each contact counts for.
+
+    def add(self, hit: tuple[int, ...], points: list[Any]) -> None:
+        """Take in one contact."""
+        self._starts.append(len(self._impulses))
+        self._impulses += [point.impulse for point in points]
+        self._hits.append(hit)
+
+    def sums(self, rows: int) -> np.ndarray:
+        """(rows, 3) [Ns] impulses, those against a row with a minus."""
+        table = np.zeros((rows, 3), dtype=np.float32)
+        if not self._hits:
+            return table
+        points = np.concatenate(self._impulses).reshape(-1, 3)
+        contacts = np.add.reduceat(points, self._starts, axis=0)
+        slots = [slot for hit in self._hits for slot in hit]
+        weights = np.repeat(contacts, [len(hit) for hit in self._hits], axis=0)
+        for axis in range(3):
+            signed = np.bincount(slots, weights[:, axis], minlength=2 * rows)
+            table[:, axis] = signed[0::2] - signed[1::2]
+        return table

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from importlib.metadata import version
 from typing import Any
@@ -46,12 +45,10 @@ class EnvGroup:
         self.bodies: list[Any] = []
         self.articulations: list[physx.PhysxArticulation] = []
         self.statics: list[Any] = []
-        self.physics_seconds = 0.0
         self._result: Any = None
         self._number()
         self._stale = np.ones(len(self.scenes), dtype=bool)
         self._moving_stale = True
-        self._awake = False  # Drive targets were sent since the last step.
         env_of = dict(zip(self.bodies, self.body_env.tolist(), strict=True))
         self._contacts = ContactTable(self.systems, env_of)
 
@@ -122,6 +119,9 @@ class EnvGroup:
         self._set_target_velocity = _flat(
             [[j.set_drive_velocity_target for j in js] for js in joints], width
         )
+        # First drive of each environment, and the end.
+        envs = np.arange(len(self.scenes) + 1)
+        self._drive_bounds = width * np.searchsorted(self.articulation_env, envs)
         self.read()
         self._check_packing()
         self._told_target = self._state[target_source]
@@ -149,34 +149,57 @@ class EnvGroup:
 
     # Stepping and reading ------------------------------------------------------------------------
 
-    def advance(self, steps: int) -> None:
+    def advance(self, steps: int, drive: bool) -> None:
         """Step every environment that often, then read its state.
 
-        All steps of one environment come in a row: its memory stays in the cache, which is worth
-        a third of the time at 64 environments.
+        Everything that is done with one environment comes in a row, from its drive targets to its
+        contacts: its memory stays in the cache, which is worth a third of the time at 64.
+
+        Args:
+            steps: physics steps.
+            drive: whether drive targets were set since the last step.
         """
-        start = time.process_time()
-        for system in self.systems:
-            step = system.step
-            for _ in range(steps):
-                step()
-        self.physics_seconds += time.process_time() - start
-        if steps:
-            self._stale[:] = True
-            self._awake = False
-            self._contacts.stepped()
-        self.read()
+        tellers = self._tellers() if drive else []
+        packed, poses = [], []
+        self._contacts.stepping()
+        for env, system in enumerate(self.systems):
+            for teller in tellers:
+                teller.tell(env)
+            self.run_physics(system, steps)
+            packed.append(system.pack())
+            poses.append(self.scenes[env].pack_poses())
+            self._contacts.stepped(env)
+        self._take(packed, slice(0, -1), poses, slice(None))
+        self._stale[:] = False
+        self._sort()
+
+    @staticmethod
+    def run_physics(system: physx.PhysxCpuSystem, steps: int) -> None:
+        """All that PhysX does in a control step of one environment."""
+        step = system.step
+        for _ in range(steps):
+            step()
 
     def read(self) -> None:
-        """Bring `sim_body` (except the velocities of moving links), `sim_qpos`, `sim_qvel` up."""
-        if not self._stale.any():
-            return
-        if self._stale.all():
-            self._take(range(len(self.scenes)), slice(0, -1), slice(None))
-        else:
-            for env in np.nonzero(self._stale)[0].tolist():
-                self._take([env], self._state_slices[env], self._entity_slices[env])
+        """Bring the state of environments that were written to up."""
+        stale = np.nonzero(self._stale)[0].tolist()
+        for env in stale:
+            packed, poses = [self.systems[env].pack()], [self.scenes[env].pack_poses()]
+            self._take(packed, self._state_slices[env], poses, self._entity_slices[env])
         self._stale[:] = False
+        if stale:
+            self._sort()
+
+    def _take(self, packed: list[bytes], state: slice, poses: list[bytes], entities: slice) -> None:
+        """Keep the packed state of consecutive environments in these places."""
+        try:
+            self._state[state] = np.frombuffer(b"".join(packed), dtype=np.float32)
+            self._poses[entities] = np.frombuffer(b"".join(poses), dtype=np.float32).reshape(-1, 7)
+        except ValueError:
+            raise RuntimeError("bodies were added or removed after the scene was set up") from None
+
+    def _sort(self) -> None:
+        """Bring `sim_body` (except the velocities of moving links), `sim_qpos`, `sim_qvel` up."""
         self._moving_stale = True
         sim = self.arrays
         sim.sim_body[self.dynamic] = self._state[self._dynamic_source]
@@ -184,16 +207,6 @@ class EnvGroup:
         sim.sim_body[self.root_row, 7:] = self._state[self._root_source[:, 7:]]
         sim.sim_qpos[:] = self._state[self._qpos_source]
         sim.sim_qvel[:] = self._state[self._qvel_source]
-
-    def _take(self, envs: Sequence[int], state: slice, entities: slice) -> None:
-        """Read the packed state of consecutive environments into these places."""
-        packed = b"".join([self.systems[env].pack() for env in envs])
-        poses = b"".join([self.scenes[env].pack_poses() for env in envs])
-        try:
-            self._state[state] = np.frombuffer(packed, dtype=np.float32)
-            self._poses[entities] = np.frombuffer(poses, dtype=np.float32).reshape(-1, 7)
-        except ValueError:
-            raise RuntimeError("bodies were added or removed after the scene was set up") from None
 
     def read_moving(self) -> None:
         """Bring the velocities of moving links and the joint accelerations up, one by one."""
@@ -294,16 +307,19 @@ class EnvGroup:
         for row in rows:
             self.bodies[row].add_force_torque(NO_PUSH, self.arrays.torque[row, :3])
 
-    def write_targets(self) -> None:
-        """Drive targets, from `sent_target` and `sent_target_velocity`.
+    def _tellers(self) -> list[_Teller]:
+        """What sends each environment its drive targets.
 
         Setting a target wakes an articulation. ManiSkill's own CPU path sets all of them each
         step, so a robot that is told to stay must not fall asleep here either.
         """
-        here = self.arrays
-        _tell(here.sent_target, self._told_target, self._set_target, wake=not self._awake)
-        _tell(here.sent_target_velocity, self._told_target_velocity, self._set_target_velocity)
-        self._awake = True
+        here, bounds = self.arrays, self._drive_bounds
+        wake = self._exists[:, :1]
+        position = _Teller(here.sent_target, self._told_target, self._set_target, bounds, wake)
+        if np.array_equal(here.sent_target_velocity, self._told_target_velocity):
+            return [position]
+        velocity = (here.sent_target_velocity, self._told_target_velocity)
+        return [position, _Teller(*velocity, self._set_target_velocity, bounds)]
 
     def revive(self) -> None:
         """Take the state over that another process has come to, as far as the arrays know it."""
@@ -317,8 +333,7 @@ class EnvGroup:
         self.write_qpos(articulations)
         self.write_qvel(articulations)
         for told in (self._told_target, self._told_target_velocity):
-            told[self._exists] = np.nan
-        self.write_targets()
+            told[self._exists] = np.nan  # The next step tells them all.
 
     # Contacts ------------------------------------------------------------------------------------
 
@@ -363,13 +378,36 @@ def _state_of(body: Any) -> np.ndarray:
     return np.concatenate([pose.p, pose.q, body.linear_velocity, body.angular_velocity])
 
 
-def _tell(wanted: np.ndarray, told: np.ndarray, setters: list, wake: bool = False) -> None:
-    """Call the setter of every entry that changed and, to wake, one in rows where none did."""
-    changed = wanted != told
-    if wake:
-        changed[~changed.any(axis=1), :1] = True
-    which = np.flatnonzero(changed)
-    values = wanted.ravel()[which].tolist()
-    for entry, value in zip(which.tolist(), values):  # noqa: B905 (strict costs a tenth)
-        setters[entry](value)
-    told[:] = wanted
+class _Teller:
+    """Sends drive targets that changed, environment by environment."""
+
+    def __init__(
+        self,
+        wanted: np.ndarray,
+        told: np.ndarray,
+        setters: list[Callable | None],
+        bounds: np.ndarray,
+        wake: np.ndarray | None = None,
+    ) -> None:
+        """
+        Args:
+            wanted: (articulations, width) targets.
+            told: (articulations, width) what was sent before; brought up to date.
+            setters: of every entry, in a row.
+            bounds: (envs + 1,) first entry of each environment, and the end.
+            wake: (articulations, 1) bool: whether the first entry is sent where none changed.
+        """
+        changed = wanted != told
+        if wake is not None:
+            changed[:, :1] |= wake & ~changed.any(axis=1, keepdims=True)
+        which = np.flatnonzero(changed)
+        self._cuts = np.searchsorted(which, bounds).tolist()
+        self._setters = [setters[entry] for entry in which.tolist()]
+        self._values = wanted.ravel()[which].tolist()
+        told[:] = wanted
+
+    def tell(self, env: int) -> None:
+        """Send an environment its own."""
+        own = slice(self._cuts[env], self._cuts[env + 1])
+        for setter, value in zip(self._setters[own], self._values[own]):  # noqa: B905
+            setter(value)

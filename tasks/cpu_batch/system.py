@@ -175,7 +175,7 @@ class BatchedCpuSystem:
         self._pushed = np.zeros(len(arrays.qf), dtype=bool)
         self._tables: list[np.ndarray] | None = None
         self._outdated = self._moving_known = False
-        self._targets_on_their_way = False
+        self._drive = False  # Drive targets were set since the last step.
         self.ready = True
 
     def _split(self) -> list[Share]:
@@ -237,18 +237,13 @@ class BatchedCpuSystem:
                     share.group.close()
                     share.group = share.local
                     share.local.revive()
-                    self._outdated = True
+                    self._outdated = self._drive = True
 
     def close(self) -> None:
         """End the other processes."""
         for share in self._shares if self.ready else []:
             if isinstance(share.group, RemoteGroup):
                 share.group.close()
-
-    @property
-    def physics_seconds(self) -> float:
-        """[s] of CPU time that this process has spent inside PhysX's own step."""
-        return sum(share.local.physics_seconds for share in self._shares)
 
     # Stepping ------------------------------------------------------------------------------------
 
@@ -266,9 +261,11 @@ class BatchedCpuSystem:
             return
         if self._pending:
             self._spread()
-        self._call("advance", self._pending)
-        self._pending = 0
-        self._outdated = self._moving_known = self._targets_on_their_way = False
+            self._call("advance", self._pending, self._drive)
+            self._pending, self._drive = 0, False
+        else:
+            self._call("read")
+        self._outdated = self._moving_known = False
         self._tables = None
 
     def _call(self, name: str, *args: Any) -> list[Any]:
@@ -405,7 +402,7 @@ class BatchedCpuSystem:
         self._pushed = asked
 
     def gpu_apply_articulation_target_position(self) -> None:
-        """Drive targets."""
+        """Drive targets; the joints are told them just before the next step."""
         self._send_targets(self._arrays.target, self._arrays.sent_target)
 
     def gpu_apply_articulation_target_velocity(self) -> None:
@@ -414,13 +411,8 @@ class BatchedCpuSystem:
 
     def _send_targets(self, wanted: np.ndarray, sent: np.ndarray) -> None:
         self._settle()  # The steps asked for so far go with the old targets.
-        if self._targets_on_their_way:
-            for share in self._shares:
-                share.group.wait()  # Another process may still be reading the last ones.
         sent[:] = wanted
-        for share in reversed(self._shares):
-            share.group.post("write_targets")
-        self._targets_on_their_way = True
+        self._drive = True
 
     def gpu_apply_rigid_dynamic_force(self) -> None:
         """Forces [N] at the centres of mass for one step."""
