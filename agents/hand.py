@@ -57,6 +57,8 @@ class HandDescription:
 
     actuators: tuple[str, ...]
     """Actuated joints; every (num_actuators,) array follows this order."""
+    actuator_parts: tuple[str, ...]
+    """Part (`PARTS`) that each actuator moves."""
     couplings: tuple[Coupling, ...]
     palm_frame: str
     """Link whose +y is the palm normal and +z the direction of straight fingers."""

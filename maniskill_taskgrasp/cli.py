@@ -44,7 +44,8 @@ class Grasp(Output):
     """Grasp topology to use, whatever the selector says (`taskgrasp topologies` lists them)."""
     policy: str = "follow"
     """"constant" closes all the way; with "follow" the palm also follows the object by what is
-    sensed; "learned" is the shipped policy; or a checkpoint file."""
+    sensed; "guarded" also waits with what touches first; "learned" is the shipped policy; or a
+    checkpoint file."""
     episodes: int = 1
     """How many times to try."""
     seed: int = 0

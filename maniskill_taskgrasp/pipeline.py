@@ -235,7 +235,7 @@ def policy_maker(
     """Maker of a policy for an environment, and the arguments the environment must have.
 
     Args:
-        name: "constant", "follow", "hover-rule", "learned" or a checkpoint of train/ppo.py.
+        name: "constant", "follow", "guarded", "hover-rule", "learned", or a checkpoint file.
         distance: what the distances shall know; None leaves it to the policy.
 
     Raises:
@@ -244,11 +244,16 @@ def policy_maker(
     given = {} if distance is None else {"distance": distance}
     from functools import partial
 
-    from maniskill_taskgrasp.tasks.closing import ConstantClosing, FollowRule, HoverRule
+    from maniskill_taskgrasp.tasks.closing import (
+        ConstantClosing,
+        FollowRule,
+        GuardedRule,
+        HoverRule,
+    )
 
     if name == "constant":
         return ConstantClosing, given
-    rules = {"follow": FollowRule, "hover-rule": HoverRule}
+    rules = {"follow": FollowRule, "guarded": GuardedRule, "hover-rule": HoverRule}
     if name in rules:
         return rules[name], {"control_mode": "pd_synergy_wrist"} | given
     from maniskill_taskgrasp.train.policy import load_policy, policy_env_kwargs

@@ -8,7 +8,11 @@ import torch
 from torch import Tensor
 
 from maniskill_taskgrasp.agents.controllers.palm_motion import PalmResidualController
-from maniskill_taskgrasp.episode import CLOSE_START
+from maniskill_taskgrasp.agents.hand import PARTS
+from maniskill_taskgrasp.episode import CLOSE_START, LIFT_START
+
+GUARD_FORCE = 0.15  # [N] contact at which a part waits for those on the other side.
+GUARD_CREEP = 0.02  # Activation that a waiting part adds each step, lest contact be lost.
 
 
 class ConstantClosing:
@@ -47,6 +51,34 @@ class FollowRule(ConstantClosing):
         """(num_envs, 3) [m, m, rad] where the palm shall go, x, y and yaw off its path."""
         shift: Tensor = self._env.shift
         return shift
+
+
+class GuardedRule(FollowRule):
+    """Follows, and waits where it touches: a part that feels the object alone presses no further
+    until thumb or palm and a finger feel it together. So an object that is not where it should be
+    is not pushed off what it stands on.
+    """
+
+    def __init__(self, env: Any, activation: float = 1.0) -> None:
+        super().__init__(env, activation)
+        hand, device = self._env.agent.hand, self._env.device
+        self._part_of_motor = torch.tensor(
+            [PARTS.index(part) for part in hand.actuator_parts], device=device
+        )
+        against = [part in ("palm", "thumb") for part in PARTS]
+        self._against = torch.tensor(against, device=device)
+
+    def __call__(self, obs: Tensor) -> Tensor:
+        action, env = super().__call__(obs), self._env
+        touching = env.reading.forces >= GUARD_FORCE
+        held = (touching & self._against).any(1) & (touching & ~self._against).any(1)
+        waiting = touching[:, self._part_of_motor] & ~held[:, None]
+        hand = env.agent.controller.controllers["hand"]
+        resting = (hand.activation() + GUARD_CREEP).clamp(max=self._activation)
+        waiting &= (env.elapsed_steps < LIFT_START)[:, None]
+        closing = action[:, self._num_palm :]
+        action[:, self._num_palm :] = torch.where(waiting, torch.minimum(closing, resting), closing)
+        return action
 
 
 class HoverRule(FollowRule):

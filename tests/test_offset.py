@@ -1,13 +1,21 @@
 """Laws of the offset filter, of fixtures under noise, and of the rules that follow the object."""
 
+from dataclasses import replace
+
 import gymnasium as gym
 import pytest
 import torch
 
 import maniskill_taskgrasp  # noqa: F401  (Registers the task.)
+from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.rotations import quat_to_matrix
 from maniskill_taskgrasp.episode import CLOSE_START, HOVER, PHASE_ENDS
-from maniskill_taskgrasp.tasks.closing import ConstantClosing, FollowRule, HoverRule
+from maniskill_taskgrasp.tasks.closing import (
+    ConstantClosing,
+    FollowRule,
+    GuardedRule,
+    HoverRule,
+)
 from maniskill_taskgrasp.tasks.offset import OffsetFilter, displaced, following
 from maniskill_taskgrasp.tasks.rewards import centre_term
 
@@ -149,3 +157,25 @@ def test_rules_bring_the_palm_nearer(blind_env, rule):
     lacking = blind_env.needed_shift() - blind_env._palm_shift()
     # Across the fingers (x); along a long object distances tell little, and it matters little.
     assert lacking[:, 0].abs().mean() < 0.4 * blind_env._true_shift[:, 0].abs().mean()
+
+
+def test_a_guarded_part_waits_until_the_other_side_touches(blind_env, monkeypatch):
+    """Only the thumb feels the object: its motors creep, the fingers close on."""
+    blind_env.reset(seed=5)
+    guarded, follow = GuardedRule(blind_env), FollowRule(blind_env)
+    for _ in range(CLOSE_START + 3):
+        blind_env.step(follow(None))
+    forces = torch.zeros(blind_env.num_envs, len(PARTS))
+    forces[:, PARTS.index("thumb")] = 1.0
+    alone = replace(blind_env.reading, forces=forces)
+    monkeypatch.setattr(blind_env, "_reading", alone)
+    thumb = torch.tensor([part == "thumb" for part in blind_env.agent.hand.actuator_parts])
+    palm = guarded._num_palm
+    waiting, closing = guarded(None)[:, palm:], follow(None)[:, palm:]
+    moving = blind_env.agent.controller.controllers["hand"].activation() < 0.9
+    assert (waiting[:, thumb & moving.all(0)] < closing[:, thumb & moving.all(0)]).all()
+    assert torch.equal(waiting[:, ~thumb], closing[:, ~thumb])
+    both = forces.clone()
+    both[:, PARTS.index("index")] = 1.0
+    monkeypatch.setattr(blind_env, "_reading", replace(alone, forces=both))
+    assert torch.equal(guarded(None)[:, palm:], closing)

@@ -39,7 +39,8 @@ class EvaluateConfig:
     """How the object is offered: auto, table, stand, rail, rack or holder."""
     policy: str = "constant"
     """"constant" closes all the way; with "follow" the palm also follows the object by what is
-    sensed; "learned" is the shipped policy; or a checkpoint file."""
+    sensed; "guarded" also waits with what touches first; "learned" is the shipped policy; or a
+    checkpoint file."""
     distance: str | None = None
     """What the distances know: exact, noisy or none; left out, as the policy was trained."""
     search: int = 0

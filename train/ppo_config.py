@@ -124,7 +124,7 @@ class PPOConfig:
     """The task's reward mode; by default the task's first."""
     sim_backend: str = "auto"
     """ManiSkill's simulation back end; auto: CUDA where there is one, else the CPU."""
-    teacher: Literal["constant", "follow", "oracle"] | None = None
+    teacher: Literal["constant", "follow", "guarded", "oracle"] | None = None
     """TaskGrasp: rule that the network imitates before PPO starts; the oracle knows where the
     object is, which the network must learn to tell from what it observes."""
     teacher_lessons: int = 8
@@ -235,7 +235,10 @@ def _positive(config: PPOConfig, *names: str) -> None:
 def _check_teacher(config: PPOConfig) -> None:
     if config.teacher is not None and not is_task_grasp(config.env_id):
         raise InputError(f"--teacher {config.teacher} is for {TASK_GRASP}, not {config.env_id}")
-    if config.teacher in ("follow", "oracle") and config.control_mode != "pd_synergy_wrist":
+    if (
+        config.teacher in ("follow", "guarded", "oracle")
+        and config.control_mode != "pd_synergy_wrist"
+    ):
         raise InputError(
             f"--teacher {config.teacher} moves the palm: add --control-mode pd_synergy_wrist"
         )

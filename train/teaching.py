@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import torch
 from torch import Tensor
 
-from maniskill_taskgrasp.tasks.closing import ConstantClosing, FollowRule, Oracle
+from maniskill_taskgrasp.tasks.closing import ConstantClosing, FollowRule, GuardedRule, Oracle
 from maniskill_taskgrasp.train.ppo_agent import ActionScaler, Agent, ObsNormalizer, sample_moments
 from maniskill_taskgrasp.train.ppo_update import make_batch
 from maniskill_taskgrasp.train.rollout import Rollout, collect
@@ -21,7 +21,12 @@ LESSON_SIZE = 512  # Samples of a gradient step.
 SOLO = 0.5  # Share of the lessons from which on the pupil acts and the teacher only corrects.
 
 
-TEACHERS = {"constant": ConstantClosing, "follow": FollowRule, "oracle": Oracle}
+TEACHERS = {
+    "constant": ConstantClosing,
+    "follow": FollowRule,
+    "guarded": GuardedRule,
+    "oracle": Oracle,
+}
 
 
 class Teacher:

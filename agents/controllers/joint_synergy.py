@@ -69,6 +69,14 @@ class JointSynergyController(CoupledHandController):
         self.closing[env_idx] = closing.to(self.closing)
         self._planned[env_idx] = True
 
+    def activation(self) -> Tensor:
+        """(num_envs, num_actuators) activation that the motors are commanded to now; 1 where a
+        joint does not move."""
+        span = self.closing - self.preshape
+        moves = span.abs() > 1e-4
+        share = (self.command - self.preshape) / torch.where(moves, span, 1.0)
+        return torch.where(moves, share, 1.0)
+
     def wanted_qpos(self, action: Tensor) -> Tensor:
         return synergy_to_qpos(action @ self._spread, self.preshape, self.closing)
 

@@ -21,6 +21,9 @@ AR10 = HandDescription(
         "thumb_flex",
         *(f"{finger}_{joint}" for finger in FINGERS for joint in ("mcp", "pip")),
     ),
+    actuator_parts=tuple(
+        part for part in ("thumb", "index", "middle", "ring", "little") for _ in range(2)
+    ),
     couplings=tuple(
         Coupling(joint=f"{finger}_dip", source=f"{finger}_pip", ratio=0.49, offset=0.16)
         for finger in FINGERS
