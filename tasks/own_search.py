@@ -55,8 +55,13 @@ class FoundGrasp:
         }
 
 
-def find_grasp(obj: str, topology: Topology, presentation: str, budget: SearchBudget) -> FoundGrasp:
+def find_grasp(
+    obj: str, topology: Topology, presentation: str, budget: SearchBudget, processes: int = 0
+) -> FoundGrasp:
     """The best grasp within the budget, from the cache where the same search was made before.
+
+    Args:
+        processes: that share the physics; 0 chooses.
 
     Raises:
         InputError: unknown object, presentation or noise.
@@ -69,17 +74,25 @@ def find_grasp(obj: str, topology: Topology, presentation: str, budget: SearchBu
             name: tuple(v) if isinstance(v, list) else v for name, v in fields.items()
         }
         return FoundGrasp(Grasp(**frozen), **data, cached=True)
-    found = search(obj, topology, presentation, budget)
+    found = search(obj, topology, presentation, budget, processes)
     data = asdict(found)
     del data["cached"]
     write_atomically(path, json.dumps(data).encode())
     return found
 
 
-def search(obj: str, topology: Topology, presentation: str, budget: SearchBudget) -> FoundGrasp:
+def search(
+    obj: str, topology: Topology, presentation: str, budget: SearchBudget, processes: int = 0
+) -> FoundGrasp:
     """Search on an object, whatever was found before."""
     trials = GraspTrials(
-        obj, topology, presentation, budget.noise, budget.num_envs, follow=budget.follow
+        obj,
+        topology,
+        presentation,
+        budget.noise,
+        budget.num_envs,
+        processes=processes,
+        follow=budget.follow,
     )
     try:
         result = GraspSearch(trials, topology, budget).run()

@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, fields
+from multiprocessing import get_context
 from pathlib import Path
 
 import tyro
@@ -37,6 +40,9 @@ from maniskill_taskgrasp.train.cells import (
 from maniskill_taskgrasp.train.evaluation_config import EvaluateConfig
 from maniskill_taskgrasp.train.offers import Offer, list_offers
 from maniskill_taskgrasp.train.traces import save_traces
+
+Searched = tuple[str, str]
+"""Topology and source of an object."""
 
 RESULTS_FILE = "results.json"
 ELSEWHERE = ("out", "num_envs")  # Settings that change no result.
@@ -122,9 +128,10 @@ def evaluate(config: EvaluateConfig) -> Json:
         env_kwargs=env_kwargs,
     )
     document = table.save(offers)
+    grasps = _search_all(todo, config) if config.search else {}
     with tqdm(total=len(todo) * config.episodes, unit="episode", disable=not todo) as bar:
         for chunk in _chunks(todo, config):
-            for offer, cell in _measure(chunk, config, conditions, bar.set_description):
+            for offer, cell in _measure(chunk, grasps, config, conditions):
                 table.cells[offer.key] = cell
             document = table.save(offers)
             bar.update(len(chunk) * config.episodes)
@@ -140,22 +147,36 @@ def _chunks(offers: list[Offer], config: EvaluateConfig) -> Iterator[list[Offer]
         yield offers[first : first + size]
 
 
+def _search_all(offers: list[Offer], config: EvaluateConfig) -> dict[Searched, FoundGrasp]:
+    """The grasp of every topology and object, searched on the object; a core for each search."""
+    wanted = {_searched(offer): offer for offer in offers}
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
+    # Spawned, not forked: a simulation that was built before a fork is no good after it.
+    with ProcessPoolExecutor(min(cores, len(wanted) or 1), get_context("spawn")) as pool:
+        jobs = {pool.submit(_search, offer, config): key for key, offer in wanted.items()}
+        with tqdm(as_completed(jobs), total=len(jobs), unit="search", disable=not jobs) as bar:
+            return {jobs[job]: job.result() for job in bar}
+
+
+def _searched(offer: Offer) -> Searched:
+    """What a search is for: sentences may ask for the same."""
+    return (offer.topology.name if offer.topology else "", offer.source)
+
+
 def _measure(
-    offers: list[Offer], config: EvaluateConfig, conditions: Conditions, say: Callable[[str], None]
+    offers: list[Offer],
+    grasps: dict[Searched, FoundGrasp],
+    config: EvaluateConfig,
+    conditions: Conditions,
 ) -> list[tuple[Offer, Json]]:
-    """Search grasps if asked for, then run the episodes of some pairs together."""
-    found: list[FoundGrasp | None] = []
+    """Run the episodes of some pairs together."""
     start = time.perf_counter()
-    for offer in offers:
-        assert offer.topology is not None
-        say(f"{offer.topology.name}, {offer.object}")
-        found.append(_searched(offer, config) if config.search else None)
+    found = [grasps.get(_searched(offer)) for offer in offers]
     jobs = [
         Job(o.topology, o.source, o.object, o.text or "", f.grasp if f else None)
         for o, f in zip(offers, found, strict=True)
         if o.topology is not None
     ]
-    say(f"{len(jobs)} pairs together")
     results = run_jobs(jobs, conditions)
     seconds = round((time.perf_counter() - start) / len(jobs), 1)
     cells = []
@@ -169,11 +190,11 @@ def _measure(
     return cells
 
 
-def _searched(offer: Offer, config: EvaluateConfig) -> FoundGrasp:
+def _search(offer: Offer, config: EvaluateConfig) -> FoundGrasp:
     assert offer.topology is not None
     # The same grasps whatever the policy, so that policies can be compared.
     budget = SearchBudget(generations=config.search, seed=config.seed, follow=True)
-    return find_grasp(offer.source, offer.topology, config.presentation, budget)
+    return find_grasp(offer.source, offer.topology, config.presentation, budget, processes=1)
 
 
 def _settings(config: EvaluateConfig) -> Json:
