@@ -22,7 +22,7 @@ from maniskill_taskgrasp.topology import TOPOLOGIES, Topology
 LIBRARY_FILE = "pregrasps.json"
 FORM_WEIGHT = 0.7  # Of a stored grasp's worth; the rest is the plain lift.
 WORTH = 0.7  # Size mismatch (log ratio) that one whole unit of worth makes up for.
-OTHER_TOPOLOGY = 0.7  # Size mismatch that counts for a grasp found for kin.
+OTHER_TOPOLOGY = 1.0  # Size mismatch that counts for a grasp found for kin (docs/planning.md).
 OTHER_PRESENTATION = 0.5  # Size mismatch that counts for a grasp found in another presentation.
 
 

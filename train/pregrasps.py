@@ -24,7 +24,7 @@ from maniskill_taskgrasp.assets.objects.store import write_atomically
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.selection.feasibility import feasible
-from maniskill_taskgrasp.tasks.closing import ConstantClosing
+from maniskill_taskgrasp.tasks.closing import ConstantClosing, FollowRule
 from maniskill_taskgrasp.tasks.grasp_library import Grasp, dump_grasps
 from maniskill_taskgrasp.tasks.grasp_search import GraspSearch, SearchBudget, SearchResult
 from maniskill_taskgrasp.tasks.placement import place
@@ -191,8 +191,8 @@ def remeasured(grasps: list[Grasp], config: PregraspConfig) -> list[Grasp]:
         presentation=config.presentation,
         seed=config.seed,
         num_envs=2 * config.num_envs,
-        make_policy=ConstantClosing,
-        env_kwargs={"obs": "paper"},
+        make_policy=FollowRule if config.follow else ConstantClosing,
+        env_kwargs={"control_mode": "pd_synergy_wrist"} if config.follow else {"obs": "paper"},
     )
     by_slug = {topology.slug: topology for topology in TOPOLOGIES}
     jobs = [Job(by_slug[g.topology], g.obj, g.obj, grasp=g) for g in grasps]
