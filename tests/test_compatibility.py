@@ -8,7 +8,7 @@ import pytest
 
 from maniskill_taskgrasp.assets.objects import library
 from maniskill_taskgrasp.knowledge import Knowledge, load_knowledge
-from maniskill_taskgrasp.selection.feasibility import UNFORMED
+from maniskill_taskgrasp.selection.feasibility import hand_limits
 from maniskill_taskgrasp.topology import TOPOLOGIES, resolve_topology
 from maniskill_taskgrasp.train.compatibility import (
     PAIRS_FILE,
@@ -77,7 +77,7 @@ def test_table_one_is_part_of_the_feasible_pairs():
 
 def test_every_topology_is_asked_for():
     """Every topology that the hand can form."""
-    formed = {t.name for t in TOPOLOGIES} - set(UNFORMED)
+    formed = {t.name for t in TOPOLOGIES} - set(hand_limits().unformed)
     assert {pair.topology for pair in committed_pairs("feasible")} == formed
 
 

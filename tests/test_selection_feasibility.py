@@ -4,22 +4,22 @@ from dataclasses import replace
 
 import pytest
 
+from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.knowledge import Affordance, load_knowledge
 from maniskill_taskgrasp.selection import feasible
-from maniskill_taskgrasp.selection.feasibility import REACH, UNFORMED, closing_extents
+from maniskill_taskgrasp.selection.feasibility import HandLimits, closing_extents, hand_limits
 from maniskill_taskgrasp.topology import TOPOLOGIES
 
 ROD = Affordance("rod", (0.14, 0.04, 0.04), 0.1, "b/c", "rigid", "a", "prolate", "cylinder")
-
-
-FORMED = [topology for topology in TOPOLOGIES if topology.name not in UNFORMED]
+LIMITS = hand_limits()
+FORMED = [topology for topology in TOPOLOGIES if topology.name not in LIMITS.unformed]
 
 
 @pytest.mark.parametrize("topology", FORMED, ids=lambda t: t.slug)
 def test_limits_decide_and_are_named(topology):
     """Each topology takes its limits' edges and refuses what is just beyond, saying the number."""
-    reach = REACH[topology.name]
+    reach = LIMITS.reach[topology.name]
     for extent in (reach.thickest_m, max(reach.thinnest_m, 0.001)):
         fits = replace(ROD, dimensions_m=(0.15, extent, extent), mass_kg=reach.payload_kg)
         assert feasible(topology, fits)[0]
@@ -33,12 +33,12 @@ def test_limits_decide_and_are_named(topology):
     assert " g" in why
 
 
-@pytest.mark.parametrize("name", UNFORMED)
+@pytest.mark.parametrize("name", LIMITS.unformed)
 def test_what_the_hand_cannot_form_fits_nothing(name):
     """Not even a thing within the reach that the topology would have."""
-    reach = REACH[name]
+    reach = LIMITS.reach[name]
     fits = replace(ROD, dimensions_m=(0.15,) + 2 * (reach.thickest_m,), mass_kg=0.01)
-    assert feasible(name, fits) == (False, UNFORMED[name])
+    assert feasible(name, fits) == (False, LIMITS.unformed[name])
 
 
 def test_heavier_or_wider_never_helps():
@@ -93,3 +93,19 @@ def test_unknown_topology_is_input_error():
     """A wrong name is refused with a close one."""
     with pytest.raises(InputError, match="power palm abd 2-5"):
         feasible("power palm abd 25", ROD)
+
+
+def test_another_hand_is_another_file():
+    """The file is all that a hand's limits need; one that lacks a topology is refused."""
+    row = {"thinnest_m": 0.0, "thickest_m": 0.1, "payload_kg": 1.0}
+    names = [topology.name for topology in TOPOLOGIES]
+    found = HandLimits.from_json({"reach": dict.fromkeys(names, row), "unformed": {}})
+    assert {reach.payload_kg for reach in found.reach.values()} == {1.0}
+    with pytest.raises(ValueError, match="in this order"):
+        HandLimits.from_json({"reach": dict.fromkeys(names[1:], row), "unformed": {}})
+
+
+def test_the_limits_and_the_postures_agree_on_what_the_hand_forms():
+    """A topology that selection never offers is one that the description calls infeasible."""
+    unformed = {t.name for t in TOPOLOGIES if not AR10.postures[t.slug].feasible}
+    assert unformed == set(LIMITS.unformed)

@@ -1,18 +1,22 @@
-"""What this hand can do with an object's size and mass, whatever people would do with it.
+"""What the hand can do with an object's size and mass, whatever people would do with it.
 
 A separate, visible step after the ranking: human probabilities are never altered here. All limits
-were measured on the AR10 hand alone, free of the arm, before anything was built on it.
+are a hand's own and come from its file, `assets/hands/<hand>.json`.
 """
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
 
 from maniskill_taskgrasp.knowledge import Affordance
 from maniskill_taskgrasp.topology import TOPOLOGY_NAMES, Topology, resolve_topology
 
-APERTURE_M = 0.080
-"""[m] The hand opens 94-99 mm from pad to pad; two rubbers take 15 mm of it."""
+HAND = "ar10"
+"""The hand that is meant."""
 
 
 @dataclass(frozen=True)
@@ -24,39 +28,48 @@ class Reach:
     thickest_m: float
     """[m] Greatest extent that fits between the opposing surfaces of the preshape."""
     payload_kg: float
-    """[kg] Heaviest mass trusted; see the comment of each row."""
+    """[kg] Heaviest mass trusted."""
+    note: str = ""
+    """What the numbers alone do not tell."""
 
 
-# Extents: pad-to-pad gap of the preshape less 15 mm of rubber, at most the aperture, narrowed by
-# what the posture search could hold; rods under 10 mm escape the curled fingers of the palm types.
-# Payloads: palm types 0.4 kg, pad types 0.3 kg, unless a 4 x 14 cm cylinder said less; they are
-# lower bounds from few trials. Side types were not measured and stay at 0.2 kg.
-REACH: dict[str, Reach] = {
-    "Power palm add 3-5": Reach(0.010, APERTURE_M, 0.4),
-    "Power palm abd 2-5": Reach(0.010, APERTURE_M, 0.4),
-    "Power palm add 2-5": Reach(0.010, 0.074, 0.4),  # 1 kg was lifted, but trapped, not held.
-    "Power pad abd 2": Reach(0.010, 0.072, 0.1),
-    "Power pad abd 2-3": Reach(0.010, 0.072, 0.3),
-    "Power pad abd 2-4": Reach(0.010, 0.072, 0.3),
-    "Intermediate abd 2": Reach(0.0035, 0.0105, 0.2),  # The fixed gap from index to middle finger.
-    "Intermediate add 2": Reach(0.0, 0.015, 0.2),  # At 20 mm the thumb meets the middle finger.
-    "Intermediate add 3": Reach(0.005, 0.033, 0.2),
-    "Precision pad abd 2": Reach(0.005, APERTURE_M, 0.1),
-    "Precision pad abd 2-3": Reach(0.005, APERTURE_M, 0.3),
-    "Precision pad abd 2-4": Reach(0.005, APERTURE_M, 0.3),
-    "Precision pad abd 2-5": Reach(0.005, 0.079, 0.3),
-    "Precision pad add 2-5": Reach(0.025, 0.075, 0.1),  # Straight fingers stay 25 mm off.
-    "Precision side abd 3": Reach(0.005, 0.020, 0.2),
-}
-assert tuple(REACH) == TOPOLOGY_NAMES
-UNFORMED = {
-    "Intermediate abd 2": "index and middle finger cannot spread, and no searched grasp held",
-}
-"""Topologies that this hand cannot form, whatever the object (docs/planning.md)."""
+@dataclass(frozen=True)
+class HandLimits:
+    """What one hand can hold."""
+
+    reach: dict[str, Reach]
+    """Topology name -> its reach, all 15 of them in their order."""
+    unformed: dict[str, str]
+    """Topologies that the hand cannot form, whatever the object -> why."""
+
+    @classmethod
+    def from_json(cls, document: dict[str, Any]) -> HandLimits:
+        """The limits in a hand's file.
+
+        Raises:
+            ValueError: the file does not give all topologies, or names others.
+        """
+        reach = {name: Reach(**row) for name, row in document["reach"].items()}
+        unformed = dict(document["unformed"])
+        if tuple(reach) != TOPOLOGY_NAMES or not set(unformed) <= set(reach):
+            raise ValueError(
+                f"a hand's limits need these topologies in this order: {TOPOLOGY_NAMES},"
+                f" got {(*reach, *unformed)}"
+            )
+        return cls(reach, unformed)
 
 
-def feasible(topology: Topology | str, affordance: Affordance) -> tuple[bool, str]:
-    """Can this hand hold the object in this topology, in a presentation that suits it?
+@cache
+def hand_limits(hand: str = HAND) -> HandLimits:
+    """Limits of a hand by the name of its file."""
+    path = files("maniskill_taskgrasp.assets").joinpath(f"hands/{hand}.json")
+    return HandLimits.from_json(json.loads(path.read_text(encoding="utf-8")))
+
+
+def feasible(
+    topology: Topology | str, affordance: Affordance, hand: str = HAND
+) -> tuple[bool, str]:
+    """Can the hand hold the object in this topology, in a presentation that suits it?
 
     The hand closes across one of the extents that people close across
     (`Affordance.grasped_dimension`); one that fits is enough.
@@ -70,9 +83,10 @@ def feasible(topology: Topology | str, affordance: Affordance) -> tuple[bool, st
     name = (resolve_topology(topology) if isinstance(topology, str) else topology).name
     if affordance.is_floppy:
         return False, "floppy: no fixed shape that rigid-body simulation could carry"
-    if name in UNFORMED:
-        return False, UNFORMED[name]
-    reach = REACH[name]
+    limits = hand_limits(hand)
+    if name in limits.unformed:
+        return False, limits.unformed[name]
+    reach = limits.reach[name]
     extents = closing_extents(affordance)
     fitting = [e for e in extents if reach.thinnest_m <= e <= reach.thickest_m]
     if not fitting:
