@@ -25,13 +25,15 @@ def lay_random_plan(env, rng):
     env.agent.set_plan(torch.tensor([0]), torch.tensor(path).float(), preshape, closing, 120)
 
 
-def random_steps(mode, num_steps, seed=0):
+def random_steps(mode, num_steps, seed=0, solver_iterations=None):
     """Largest overrun of a joint limit [rad] over random steps; every state must be finite.
 
     Half of the actions lie on the bounds, and each is held for up to 20 steps, so that joints are
     driven to their limits and the arm into the table.
     """
     env = make(mode, table=True)
+    if solver_iterations is not None:
+        env.agent.robot._objs[0].set_solver_position_iterations(solver_iterations)
     rng = np.random.default_rng(seed)
     space = env.single_action_space
     limits = env.agent.robot.get_qlimits()[0].numpy()
@@ -61,8 +63,8 @@ def test_random_steps_stay_finite_and_inside_the_limits(mode):
 
 PRESSED = pytest.mark.xfail(
     strict=False,
-    reason="whole arm strokes into the table push the thumb 0.030 rad past its stop in 3 of 10,000"
-    " steps; without the table no joint passes its limit",
+    reason="at the task's 12 solver iterations a hand joint goes up to 0.052 rad past its stop in 8"
+    " of 40,000 steps in which the arm presses it into the table; it takes 24 to keep the stop",
 )
 
 
@@ -75,3 +77,9 @@ def test_ten_thousand_random_steps_stay_finite_and_inside_the_limits(mode, recor
     overrun = random_steps(mode, 10_000, seed=1)
     record_property("overrun_rad", overrun)
     assert overrun <= LIMIT_TOLERANCE
+
+
+@pytest.mark.slow
+def test_the_overrun_is_the_solvers():
+    """Same actions, 24 solver iterations: the stops hold against all that the arm can press."""
+    assert random_steps("pd_joint_pos", 10_000, seed=1, solver_iterations=24) <= LIMIT_TOLERANCE
