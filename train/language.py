@@ -25,15 +25,9 @@ from maniskill_taskgrasp.language.encoder import load_encoder
 from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, Phrase, load_lexicon
 from maniskill_taskgrasp.language.objects import PHONING
 from maniskill_taskgrasp.language.verbs import base_of
-from maniskill_taskgrasp.language.words import word_list
+from maniskill_taskgrasp.train.instructions import PEOPLE, TARGETS, fill_frame, fill_idle_frame
 
 DEFAULT_OUT = Path(__file__).resolve().parent.parent / "assets" / "checkpoints" / "language.npz"
-PEOPLE = word_list("people")
-"""Whom people phone."""
-TARGETS = word_list("targets")
-"""Things that tools are used on; the table's own objects are what is held."""
-OFF_TOPIC_VERBS = word_list("off_topic_verbs")
-OFF_TOPIC_NOUNS = word_list("off_topic_nouns")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,9 +36,11 @@ class LanguageConfig:
 
     out: Path = DEFAULT_OUT
     """Where to write the npz file."""
-    per_phrase: int = 8
-    """Sentences made of each phrase of the lexicon."""
-    off_topic: int = 900
+    clauses: int = 2
+    """Bare imperatives made of each phrase of the lexicon."""
+    framed: int = 2
+    """Whole instructions made of each (`train/instructions.py`)."""
+    idle: int = 2000
     """Sentences of the class "no action of the table"."""
     weight_decay: float = 1e-5
     """L2 penalty on the head's weights."""
@@ -96,22 +92,21 @@ def fill(phrase: Phrase, rng: random.Random) -> str:
 def make_sentences(config: LanguageConfig) -> tuple[list[str], list[str]]:
     """Sentences and their actions, deduplicated in order."""
     pairs: dict[tuple[str, str], None] = {}
-    for phrases in load_lexicon().phrases.values():
-        for phrase in phrases:
-            rng = random.Random(
-                f"{config.seed} {phrase.action} {phrase.text} {sorted(phrase.nouns)}"
-            )
-            for _ in range(config.per_phrase):
-                pairs[fill(phrase, rng), phrase.action] = None
+    phrases = [phrase for found in load_lexicon().phrases.values() for phrase in found]
+    for phrase in phrases:
+        rng = random.Random(f"{config.seed} {phrase.action} {phrase.text} {sorted(phrase.nouns)}")
+        for _ in range(config.clauses):
+            pairs[fill(phrase, rng), phrase.action] = None
+        for _ in range(config.framed):
+            pairs[fill_frame(phrase, rng.choice(phrases), rng), phrase.action] = None
     for action in load_knowledge().actions:
         for text in annotator_phrases(action):
             pairs[text, action] = None
             for name in objects_of(action)[:4]:
                 pairs[f"{text} with the {name}", action] = None
     rng = random.Random(config.seed)
-    for _ in range(config.off_topic):
-        sentence = f"{rng.choice(OFF_TOPIC_VERBS)} {rng.choice(OFF_TOPIC_NOUNS)}"
-        pairs[sentence, NO_ACTION] = None
+    for _ in range(config.idle):
+        pairs[fill_idle_frame(rng.choice(phrases), rng), NO_ACTION] = None
     return [text for text, _ in pairs], [action for _, action in pairs]
 
 
@@ -163,6 +158,11 @@ def encode(texts: list[str]) -> np.ndarray:
     return out
 
 
+def quantised(vectors: np.ndarray) -> np.ndarray:
+    """(n, d) vectors as int8; their direction is kept to a fraction of a degree."""
+    return np.rint(vectors * (127 / np.abs(vectors).max(axis=1, keepdims=True))).astype(np.int8)
+
+
 def save_atomically(path: Path, arrays: dict[str, np.ndarray]) -> None:
     """Write an npz file that is either whole or absent."""
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -189,7 +189,7 @@ def train(config: LanguageConfig) -> dict[str, object]:
             "bias": bias.astype(np.float32),
             "classes": np.array(classes),
             "names": np.array(object_names),
-            "name_vectors": encode(object_names).astype(np.float16),
+            "name_vectors": quantised(encode(object_names)),
         },
     )
     return {

@@ -29,6 +29,10 @@ RESULTS = word_map("results")
 RESULTLESS = word_set("resultless")
 """Verbs that keep a state instead of bringing it about: "hold the door open"."""
 VAGUE_BONUS = 2.0  # Log-odds of a phrase less specific than the best.
+READINGS = {"clause": 0.65, "said": 0.15, "verb": 0.12, "objects": 0.08}
+"""Weights of what is mixed: the clause with its phrases, the whole request by meaning alone, any
+phrase of the verb, and what people did with the objects named. The first decides nearly alone;
+the others fill the top three where it is wrong."""
 
 
 @dataclass(frozen=True)
@@ -65,12 +69,13 @@ def load_head() -> Head:
     """The trained head (`train/language.py`)."""
     with as_file(files("maniskill_taskgrasp.assets") / "checkpoints" / "language.npz") as path:
         data = np.load(path)
+        vectors = data["name_vectors"].astype(np.float32)
         return Head(
             weights=data["weights"].astype(np.float32),
             bias=data["bias"],
             classes=tuple(data["classes"].tolist()),
             names=tuple(data["names"].tolist()),
-            name_vectors=data["name_vectors"].astype(np.float32),
+            name_vectors=vectors / np.linalg.norm(vectors, axis=1, keepdims=True),
         )
 
 
@@ -84,7 +89,9 @@ def matching_phrases(
         referents: words for what its pronouns refer to.
     """
     found: dict[str, tuple[int, float]] = {}
-    nouns = referents | frozenset(clause.words) | {w for r in clause.roles for w in r.text.split()}
+    told = {w for r in clause.roles for w in r.text.split()}
+    singular = {w[:-1] for w in told if w.endswith("s")}
+    nouns = referents | frozenset(clause.words) | told | singular
     sizes = _list_sizes()
     for phrase in load_lexicon().phrases.get(clause.verb, ()):
         if matches(phrase, clause.words, nouns):
@@ -126,36 +133,85 @@ def _list_sizes() -> dict[str, int]:
     return sizes
 
 
-def meaning_logits(text: str) -> np.ndarray:
-    """(classes,) log-probabilities of the head for a text.
+def meaning_logits(texts: list[str]) -> np.ndarray:
+    """(n, classes) log-probabilities of the head for n texts.
 
     Raises:
         EncoderMissingError: the encoder is not installed.
     """
     head = load_head()
-    logits = head.weights @ load_encoder().encode([text])[0] + head.bias
-    return logits - np.logaddexp.reduce(logits)
+    logits = load_encoder().encode(texts) @ head.weights.T + head.bias
+    return logits - np.logaddexp.reduce(logits, axis=1, keepdims=True)
 
 
-def score_actions(clause: Clause, referents: frozenset[str] = frozenset()) -> ActionScores:
+def _shares(counts: dict[str, float], classes: tuple[str, ...]) -> np.ndarray | None:
+    """(classes,) counts as shares of their sum; None where nothing was counted."""
+    values = np.array([counts.get(name, 0.0) for name in classes])
+    return values / values.sum() if values.any() else None
+
+
+def _verb_counts(clause: Clause) -> dict[str, float]:
+    """How the lexicon uses the verb at all, with any particle or noun: typical phrases more."""
+    counts: dict[str, float] = {}
+    sizes = _list_sizes()
+    for phrase in load_lexicon().phrases.get(clause.verb, ()):
+        typical = 1.5 - phrase.rank / sizes[phrase.action]
+        counts[phrase.action] = max(counts.get(phrase.action, 0.0), typical / phrase.specificity)
+    return counts
+
+
+def _object_counts(clause: Clause) -> dict[str, float]:
+    """What people did with the objects that the clause names."""
+    counts: dict[str, float] = {}
+    for role in clause.roles:
+        if role.mention is not None:
+            for action, n in load_knowledge().actions_of(role.mention.objects[0][0]).items():
+                counts[action] = counts.get(action, 0.0) + n
+    return counts
+
+
+def mix_readings(readings: dict[str, np.ndarray | None]) -> np.ndarray:
+    """(classes,) weighted mean of the readings that there are.
+
+    Args:
+        readings: name (`READINGS`) -> (classes,) probabilities, or None.
+    """
+    given = {name: value for name, value in readings.items() if value is not None}
+    total = sum(READINGS[name] for name in given)
+    return np.sum([READINGS[name] / total * value for name, value in given.items()], axis=0)
+
+
+def score_actions(
+    clause: Clause, referents: frozenset[str] = frozenset(), said: str = ""
+) -> ActionScores:
     """Probabilities of the actions for a clause; by the lexicon alone without the encoder.
 
     Args:
         clause: what to match.
         referents: words for what its pronouns refer to.
+        said: the whole request around the clause.
     """
     found = matching_phrases(clause, referents)
     bonus = phrase_bonus(found)
     classes = (*load_knowledge().actions, NO_ACTION)
+    whole = None
     try:
-        logits = meaning_logits(clause.text)
+        logits, heard = meaning_logits([clause.text, said or clause.text])
         classes = load_head().classes
+        whole = np.exp(heard)
     except EncoderMissingError:
         logits = np.zeros(len(classes))
     no_action = float(np.exp(logits[classes.index(NO_ACTION)]))
     logits = logits + np.array([bonus.get(name, 0.0) for name in classes])
     logits = logits + np.array([_tool_bonus(clause, name) for name in classes])
-    probabilities = np.exp(logits - np.logaddexp.reduce(logits))
+    probabilities = mix_readings(
+        {
+            "clause": np.exp(logits - np.logaddexp.reduce(logits)),
+            "said": whole,
+            "verb": _shares(_verb_counts(clause), classes),
+            "objects": _shares(_object_counts(clause), classes),
+        }
+    )
     order = [i for i in np.argsort(-probabilities) if classes[i] != NO_ACTION]
     ranked = tuple((classes[i], float(probabilities[i])) for i in order)
     particular = any(specificity > 1 for specificity, _ in found.values())

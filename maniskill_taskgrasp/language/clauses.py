@@ -34,6 +34,7 @@ from spacy.tokens import Doc  # noqa: E402
 if TYPE_CHECKING:
     from spacy.tokens import Token
 
+    from maniskill_taskgrasp.language.mentions import Mention
 
 RECEIVERS = word_set("receivers")
 NEEDY = word_set("needy")
@@ -355,6 +356,23 @@ def _finish(
         at=token.i,
         result=_result(doc, token.i, high),
         earlier=earlier,
+    )
+
+
+def clause_without_verb(doc: Doc, mentions: tuple[Mention, ...], text: str) -> Clause:
+    """A whole segment as one request, for when no verb of it asks for anything."""
+    words = tuple(word for t in doc for word in (t.lower_, t.lemma_))
+    roles = find_roles(doc, mentions, -1, 0, len(doc))
+    return Clause(
+        verb="",
+        words=words,
+        roles=tuple(r for r in roles if r.mention is not None),
+        mood="request",
+        negated=False,
+        transfer=False,
+        purpose=False,
+        text=text,
+        at=-1,
     )
 
 

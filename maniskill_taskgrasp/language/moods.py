@@ -97,7 +97,8 @@ def is_passive(verb: Token) -> bool:
 def is_undone(verb: Token) -> bool:
     """Whether the words complain that something is not done: "has not been rinsed yet"."""
     words = {child.lower_ for child in verb.children}
-    return is_passive(verb) and bool(words & NEGATIONS) and bool(words & {"yet", "still"})
+    lately = words & {"yet", "still", "been"}
+    return is_passive(verb) and bool(words & NEGATIONS) and bool(lately)
 
 
 def _is_told(verb: Token) -> bool:

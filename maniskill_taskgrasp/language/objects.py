@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from maniskill_taskgrasp.knowledge import load_knowledge
-from maniskill_taskgrasp.language.actions import load_head
+from maniskill_taskgrasp.language.actions import GENERIC_ACTIONS, load_head
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
-from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, load_lexicon
+from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, TOOL_ACTIONS, load_lexicon
 from maniskill_taskgrasp.language.spelling import respell_name
-from maniskill_taskgrasp.language.words import word_set
+from maniskill_taskgrasp.language.words import word_map, word_set
 
 if TYPE_CHECKING:
     from maniskill_taskgrasp.language.clauses import Clause
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from maniskill_taskgrasp.language.plan import Task
     from maniskill_taskgrasp.language.roles import Role
 
-NEAREST_MINIMUM = 0.66  # Cosine below which a name is not the object that was meant.
+NEAREST_MINIMUM = 0.72  # Cosine below which a name is not the object that was meant.
+USED_MINIMUM = 0.4  # Cosine from which an unknown thing is like what people used for the action.
 NAMED_AFTER_MINIMUM = 0.75  # The same for a verb with its target, for a tool that nobody named.
 SLIP_SCORE = 0.8  # What one slip leaves of a name's certainty.
 CANDIDATES = 5  # Alternatives that an answer lists.
@@ -35,6 +36,10 @@ WORK_ACTIONS = word_set("work_actions")
 """Tool actions whose target is what is worked on, unless people held that very object."""
 FIXTURES = word_set("fixtures")
 """Things that are cleaned where they are, with a cloth in the hand."""
+TOOLS_OF_VERBS = word_map("tools_of_verbs")
+"""Verbs that say what is held without being its name: "sweep" takes a brush."""
+CONTENTS = word_set("contents")
+"""What is spilled or poured: words that stand for their container only where it is handled."""
 HAND_TOOLS = ("wrench", "hex wrench", "screwdriver", "allen wrench", "pliers", "chuck key")
 FASTENING = word_set("fastening")
 """Actions on bolts and screws; people did them with `HAND_TOOLS`, under any of these names."""
@@ -81,9 +86,9 @@ def used_for(action: str) -> tuple[tuple[str, float], ...]:
     return tuple((name, count / total) for name, count in ranked)
 
 
-def _only_describes(text: str, name: str) -> bool:
-    """Whether a name has the text only before its noun: a "nail" is no "nail hammer"."""
-    return name.startswith(f"{text} ") or f" {text} " in name
+def _only_contains(text: str, name: str) -> bool:
+    """Whether a name has the text as a part: a "nail" is no "nail hammer", a "bus" no "toy bus"."""
+    return text != name and f" {text} " in f" {name} "
 
 
 def nearest(text: str, *, synonyms: bool = True) -> tuple[tuple[str, float], ...]:
@@ -101,7 +106,7 @@ def nearest(text: str, *, synonyms: bool = True) -> tuple[tuple[str, float], ...
     best: dict[str, float] = {}
     for i in np.argsort(-cosines)[: 4 * CANDIDATES]:
         foreign = not synonyms and head.names[i] not in load_knowledge().objects
-        if foreign or _only_describes(text, head.names[i]):
+        if foreign or _only_contains(text, head.names[i]):
             continue
         for name, certainty in load_lexicon().names[head.names[i]]:
             best.setdefault(name, float(cosines[i]) * certainty)
@@ -140,6 +145,33 @@ def from_data(action: str, besides: tuple[tuple[str, float], ...] = ()) -> Held:
     name, share = ranked[0]
     note = f"no object was named for {action}: took {name!r}, which people used most often for it"
     return Held(name, share, (*ranked[1:CANDIDATES], *besides), note, guessed=True)
+
+
+def tool_in_verb(clause: Clause) -> Held | None:
+    """The tool that the verb itself names: "sponge off the table", "sweep the porch"."""
+    verb = clause.verb
+    name = TOOLS_OF_VERBS.get(verb) or next(iter(load_lexicon().names.get(verb, ())), (None,))[0]
+    if name is None:
+        return None
+    note = f"no object was named: took {name!r}, which {verb!r} is done with"
+    return Held(name, SYNONYM_SCORE, (), note)
+
+
+def like_what_was_used(text: str, action: str) -> Held | None:
+    """Of the objects that people used for an action, the one that an unknown thing is like."""
+    used = [name for name, _ in used_for(action)] if action not in GENERIC_ACTIONS else []
+    head = load_head()
+    rows = [head.names.index(name.lower()) for name in used]
+    try:
+        vector = load_encoder().encode([text])[0]
+    except EncoderMissingError:
+        return None
+    cosines = head.name_vectors[rows] @ vector
+    if not rows or cosines.max() < USED_MINIMUM:
+        return None
+    name, score = used[int(cosines.argmax())], float(cosines.max())
+    note = f"no object is called {text!r}: took {name!r}, the nearest that people used for {action}"
+    return Held(name, score, nearest(text), note, guessed=True)
 
 
 def named_after(clause: Clause) -> Held | None:
@@ -190,7 +222,8 @@ def _from_role(role: Role, task: Task) -> Held | None:
 def _from_acted_on(mention: Mention, task: Task, action: str) -> Held:
     """The named target, or the data's tool where the target is only worked on."""
     held = from_mention(mention)
-    if held.name is not None and is_worked_on(held.name, action):
+    spilled = mention.words in CONTENTS and action in TOOL_ACTIONS - POURED_ACTIONS
+    if held.name is not None and (spilled or is_worked_on(held.name, action)):
         return _spoken_of(task, action) or from_data(action, ((held.name, held.score),))
     return held
 
@@ -287,8 +320,11 @@ def choose_object(task: Task, action: str | None) -> Held:
         return held
     target = clause.role("target")
     if action in TOOL_ACTIONS:
-        return _spoken_of(task, action) or named_after(clause) or from_data(action)
+        spoken = _spoken_of(task, action) or named_after(clause)
+        return spoken or tool_in_verb(clause) or from_data(action)
     if target is not None and not target.pronoun:
-        return named_after(clause) or from_words(target.text)
+        held = named_after(clause) or from_words(target.text)
+        found = held.name is not None
+        return held if found else like_what_was_used(target.text, action) or held
     before = antecedent(task) if target is None else None
     return from_mention(before) if before is not None else Held(None, 0.0)

@@ -37,6 +37,8 @@ class Told:
     """Objects named before this clause, oldest first, without those that were ruled out."""
     later: tuple[Mention, ...] = ()
     """Objects named after it, for a pronoun that runs ahead of its noun."""
+    said: str = ""
+    """The whole request around it."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +103,7 @@ def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
         for clause in docs[k]._.clauses:
             own = [m for m in docs[k]._.mentions if m.end <= clause.at]
             later = [m for doc in docs[k + 1 :] for m in doc._.mentions]
-            told.append(Told(clause, (*seen[k], *own), tuple(later)))
+            told.append(Told(clause, (*seen[k], *own), tuple(later), segments[k].text))
     return told
 
 

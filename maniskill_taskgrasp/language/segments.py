@@ -8,7 +8,7 @@ from typing import Literal
 
 from maniskill_taskgrasp.language.lexicon import load_lexicon
 from maniskill_taskgrasp.language.text import FILLERS, OPENER, strip_opener
-from maniskill_taskgrasp.language.words import word_list, word_set
+from maniskill_taskgrasp.language.words import word_list, word_map, word_set
 
 CONNECTORS = word_set("connectors")
 NEGATORS = tuple(f"{words.strip()} " for words in word_list("negators"))
@@ -36,6 +36,14 @@ RETRACTING = re.compile(
 """What a speaker says before a request that takes the place of the one before it."""
 NEW_SUBJECT = re.compile(r",\s+(?=(?:i|i'm|i'll|i'd|we|we'll|you|(?:can|could|would|will) you)\s)")
 
+STATES = word_map("states")
+"""What is wrong with a thing, and what people want done about it: "the hinge squeaks"."""
+IN_STATE = re.compile(
+    r"(?P<thing>(?:the|my|your|this|that|these|those|our|his|her|all|both)\s(?:[\w'-]+\s){1,4}?)"
+    r"(?:(?:is|are|looks?|feels?|got|gets?|keeps?|seems?)\s)?"
+    r"(?:(?:so|very|all|really|quite|pretty|still|too|completely|again)\s)*"
+    rf"(?P<state>{'|'.join(sorted(map(re.escape, STATES), key=len, reverse=True))})(?: again)?"
+)
 TELLING_WORDS = frozenset(
     ["i", "he", "she", "they", "we", "it", "who", "the", "a", "an", "my", "of", "to"]
 )
@@ -165,3 +173,9 @@ def frame(part: str) -> Segment:
         framed = "not " + body if negated else body
     speaking = body.partition(" ")[0] in SPEAKING
     return Segment(part, framed, negated, order, inner, speaking or bool(ASKING.match(body)))
+
+
+def request_of_state(sentence: str) -> str | None:
+    """What a complaint asks for: "the hinge squeaks" -> "oil the hinge"."""
+    told = IN_STATE.fullmatch(sentence.replace("'s ", " is "))
+    return f"{STATES[told['state']]} {told['thing'].strip()}" if told else None

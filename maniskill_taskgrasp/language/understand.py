@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,19 +12,27 @@ from maniskill_taskgrasp.language.actions import (
     most_frequent_parameters,
     score_actions,
 )
+from maniskill_taskgrasp.language.clauses import clause_without_verb
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.guard import TRY, refuse
 from maniskill_taskgrasp.language.instruction import Instruction, Rejected
 from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, load_lexicon
 from maniskill_taskgrasp.language.model import load_model
 from maniskill_taskgrasp.language.objects import Held, antecedent, choose_object
-from maniskill_taskgrasp.language.plan import Task, alone, contradiction, make_tasks, tell
-from maniskill_taskgrasp.language.segments import frame, split_requests, strip_retraction
+from maniskill_taskgrasp.language.plan import Task, Told, alone, contradiction, make_tasks, tell
+from maniskill_taskgrasp.language.segments import (
+    frame,
+    request_of_state,
+    split_requests,
+    strip_retraction,
+)
 from maniskill_taskgrasp.language.spelling import correct, correct_verb
 from maniskill_taskgrasp.language.text import FILLERS, MAX_SEGMENTS, clean, split_sentences
 from maniskill_taskgrasp.language.words import word_set
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from spacy.tokens import Doc
 
     from maniskill_taskgrasp.language.clauses import Clause
@@ -34,6 +43,10 @@ NAMED_MINIMUM = 0.25  # The same where the clause names an object of the data.
 REFUSED_VERBS = word_set("refused_verbs")
 """Verbs that are no task for a hand, whatever their nouns."""
 NO_ACTION_MAXIMUM = 0.5  # Probability of "none of the 74" above which an unknown verb is refused.
+WHOLE_MINIMUM = 0.5  # The same where only the whole sentence is read, without any grammar.
+WHOLE_NO_ACTION = 0.1  # Probability of "none of the 74" above which it is not read so.
+URGENT = frozenset(["please", "now", "quick", "quickly", "hurry"])
+"""Words that make a request of a name alone."""
 BY_MEANING = "no listed phrase has "
 TRANSFER_NOTE = "the words ask for a transfer, not a use: the object's usual actions decide"
 LIGHTER_NOTE = "the sentence encoder is not installed ({}): only listed phrases are understood"
@@ -105,9 +118,18 @@ def understand_clean(
     if not answers:
         told = tell(segments, read_inner(segments, docs))
         answers = [answer(task, text, object_override) for task in make_tasks(told)]
+    refused = answers
     understood = [a for a in answers if isinstance(a, Instruction)]
     if not understood:
-        return explain_refusal(text, answers, docs)
+        understood = answers = [*read_whole(text, segments, docs, object_override)]
+    complaints = (
+        [] if understood else [*filter(None, map(request_of_state, split_sentences(cleaned)))]
+    )
+    if complaints:
+        meant = f"took the complaint as {complaints[0]!r}"
+        return understand_clean(text, complaints[0], (*notes, meant), object_override)
+    if not understood:
+        return explain_refusal(text, refused, docs)
     first = answers.index(understood[0])
     later = tuple(
         a for a in answers[first + 1 :] if isinstance(a, Instruction) or a.kind == "no_object"
@@ -115,12 +137,36 @@ def understand_clean(
     return finish(understood[0], text, later, notes)
 
 
+def read_whole(
+    text: str, segments: list[Segment], docs: list[Doc], object_override: str | None
+) -> Iterator[Instruction]:
+    """Requests whose grammar says nothing but whose meaning is plain: "the lid off, quick".
+
+    Only what names an object and sounds like a request for one of the 74 actions is read so.
+    """
+    for segment, doc in zip(segments, docs, strict=True):
+        denied = segment.negated or any(c.negated for c in doc._.clauses)
+        mentions = tuple(m for m in doc._.mentions if m.objects[0][1] >= SYNONYM_SCORE)
+        silent = not any(token.pos_ in {"VERB", "ADP"} for token in doc)
+        told = any(token.tag_ == "VBD" for token in doc)
+        named = bool(mentions) or object_override is not None
+        if segment.asking or denied or silent or told or not named:
+            continue
+        clause = clause_without_verb(doc, mentions, segment.text)
+        scores = score_actions(clause, said=segment.text)
+        if scores.no_action > WHOLE_NO_ACTION or scores.ranked[0][1] < WHOLE_MINIMUM:
+            continue
+        found = answer(Task(Told(clause, (), (), segment.text)), text, object_override)
+        if isinstance(found, Instruction):
+            yield found
+
+
 def bare_name(cleaned: str) -> str | None:
     """The object that is all there is in a text but politeness, None for anything more."""
     words = [w.strip(",.!?") for w in cleaned.split()]
     while words and words[0] in FILLERS | {"the", "a", "an", "my", "that", "this"}:
         words = words[1:]
-    while words and words[-1] in FILLERS:
+    while words and words[-1] in FILLERS | URGENT:
         words = words[:-1]
     found = load_lexicon().names.get(" ".join(words), ())
     return found[0][0] if found else None
@@ -129,8 +175,8 @@ def bare_name(cleaned: str) -> str | None:
 def bare_request(
     text: str, cleaned: str, name: str, notes: tuple[str, ...]
 ) -> Instruction | Rejected:
-    """A name alone is a transfer when it is said politely, and nothing otherwise."""
-    if "please" not in cleaned:
+    """A name alone is a transfer when said politely or urgently, and nothing otherwise."""
+    if not URGENT & set(re.split(r"[^a-z]+", cleaned)):
         reason = f"{echo(text)} names {name!r} but nothing to do with it: try 'hand me the {name}'"
         return Rejected(text, reason, "no_action")
     return Instruction(
@@ -196,7 +242,7 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
     """One task's instruction, or why it has none."""
     scores = None
     if task.told is not None:
-        scores = score_actions(task.told.clause, referents(task))
+        scores = score_actions(task.told.clause, referents(task), task.told.said)
         if not is_meant(task.told.clause, scores):
             if task.preparation is not None:
                 return answer(alone(task.preparation)[0], text, object_override)
@@ -215,7 +261,8 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
             return Rejected(text, reason, "off_topic")
     by_meaning = None
     if task.told is not None and scores is not None and not scores.known_verb:
-        by_meaning = f"{BY_MEANING}{task.told.clause.verb!r}: took the nearest action in meaning"
+        words = task.told.clause.verb or task.told.clause.text
+        by_meaning = f"{BY_MEANING}{words!r}: took the nearest action in meaning"
     notes = [n for n in (by_meaning, held.note, TRANSFER_NOTE if action is None else None) if n]
     return Instruction(
         text=task.source.clause.text,
