@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from maniskill_taskgrasp.agents.hand import PARTS
+from maniskill_taskgrasp.topology import TOPOLOGIES
+
 CONTACT_BONUS = 10.0  # b1: reward for each hand link that presses the object.
 FORCE_COST = 0.05  # b2 [1/N]: the paper's 5000 Nm fingers need another scale than 0.6 Nm ones.
 NO_CONTACT = -1000.0  # Paper, section III.
@@ -34,6 +37,30 @@ class RewardWeights:
     @property
     def total(self) -> float:
         return sum(vars(self).values())
+
+
+@dataclass(frozen=True)
+class PartRoles:
+    """What each part is to each topology; every table is (num_topologies, num_parts) bool."""
+
+    named: Tensor
+    opposing: Tensor
+    """Named parts that stand against the fingers."""
+    fingers: Tensor
+    """Named fingers."""
+
+    @classmethod
+    def of_topologies(cls, device: torch.device) -> PartRoles:
+        """Of `TOPOLOGIES`, in their order."""
+        named = torch.tensor(
+            [[part in t.parts for part in PARTS] for t in TOPOLOGIES], device=device
+        )
+        finger = torch.tensor([part not in ("palm", "thumb") for part in PARTS], device=device)
+        return cls(named, named & ~finger, named & finger)
+
+    def of(self, index: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """(num_envs, num_parts) named, opposing and fingers of topologies (num_envs,)."""
+        return self.named[index], self.opposing[index], self.fingers[index]
 
 
 def paper_reward(contact_count: Tensor, force: Tensor, success: Tensor) -> Tensor:

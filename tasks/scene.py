@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sapien
 from mani_skill.envs.scene import ManiSkillScene
 from mani_skill.sensors.camera import CameraConfig
 from mani_skill.utils import sapien_utils
 from mani_skill.utils.building.ground import build_ground
-from mani_skill.utils.structs import Actor
+from mani_skill.utils.structs import Actor, Articulation
 from mani_skill.utils.structs.pose import Pose
 
 from maniskill_taskgrasp.assets.objects.actor import add_fixture, add_object
+from maniskill_taskgrasp.tasks.noise import Noise, draw_friction
 from maniskill_taskgrasp.tasks.placement import Placement
 
 ROBOT_POSE = sapien.Pose([-0.85, 0.0, 0.152])
@@ -94,6 +97,21 @@ def add_lights(scene: ManiSkillScene, shadow: bool) -> None:
         [-0.6, -0.5, -1.0], [1.1, 1.1, 1.05], shadow=shadow, shadow_scale=2, shadow_map_size=2048
     )
     scene.add_directional_light([0.7, 0.6, -0.8], [0.5, 0.5, 0.55])
+
+
+def randomize(
+    obj: Actor, robot: Articulation, placements: list[Placement], noise: Noise, rngs: list[Any]
+) -> None:
+    """Draw friction and mass of each environment's object, before the first physics step."""
+    for env, (placement, rng) in enumerate(zip(placements, rngs, strict=True)):
+        friction = draw_friction(noise, placement.model.friction, rng)
+        body = obj._bodies[env]
+        factor = rng.uniform(*noise.mass)
+        body.set_mass(body.mass * factor)
+        body.set_inertia(body.inertia * factor)
+        set_friction(body, friction)
+        for link in robot.links:
+            set_friction(link._bodies[env], friction)
 
 
 def set_friction(body: sapien.physx.PhysxRigidBaseComponent, coefficient: float) -> None:

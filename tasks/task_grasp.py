@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,29 +21,23 @@ from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
 from maniskill_taskgrasp.agents.sawyer_ar10.agent import SawyerAR10
 from maniskill_taskgrasp.assets.objects import library
-from maniskill_taskgrasp.episode import (
-    CONTROL_FREQ,
-    HOVER,
-    LIFT_START,
-    MAX_EPISODE_STEPS,
-    PHASE_ENDS,
-    PHASES,
-)
-from maniskill_taskgrasp.errors import InputError, echo
+from maniskill_taskgrasp.episode import CONTROL_FREQ, LIFT_START, MAX_EPISODE_STEPS
 from maniskill_taskgrasp.tasks import rewards, scene
+from maniskill_taskgrasp.tasks.arguments import (
+    DISTANCES,
+    OBSERVATIONS,
+    one_of,
+    resolve_objects,
+    resolve_topologies,
+)
 from maniskill_taskgrasp.tasks.arm_ik import ArmIK
 from maniskill_taskgrasp.tasks.cpu_batch import CpuBatchMixin
 from maniskill_taskgrasp.tasks.episode_state import from_rows, to_rows, unflattened
-from maniskill_taskgrasp.tasks.noise import draw_friction, draw_offsets, resolve_noise
-from maniskill_taskgrasp.tasks.offset import (
-    FEELS,
-    LOOKS,
-    OffsetFilter,
-    displaced,
-    following,
-)
+from maniskill_taskgrasp.tasks.memory import EpisodeMemory
+from maniskill_taskgrasp.tasks.noise import draw_offsets, resolve_noise
+from maniskill_taskgrasp.tasks.observation import KnownFacts
+from maniskill_taskgrasp.tasks.offset import displaced, following
 from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
-from maniskill_taskgrasp.tasks.phases import phase_at
 from maniskill_taskgrasp.tasks.placement import Placement, place
 from maniskill_taskgrasp.tasks.planner import PregraspPlanner
 from maniskill_taskgrasp.tasks.plans import PlanBook, Plans
@@ -52,54 +45,9 @@ from maniskill_taskgrasp.tasks.pregrasp import palm_path
 from maniskill_taskgrasp.tasks.senses import HandSenses, Reading
 from maniskill_taskgrasp.tasks.sensing import HandBoxes, ObjectSurfaces
 from maniskill_taskgrasp.tasks.surface import surface_of
-from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
+from maniskill_taskgrasp.topology import Topology, resolve_topology
 
 SIM_FREQ = 100  # [Hz]
-DISTANCES = ("exact", "noisy", "none")
-DISTANCE_ERROR = (0.003, 0.005)  # [m] size of the error that "noisy" draws once an episode.
-OBSERVATIONS = ("full", "paper")
-EPISODE_FIELDS = (
-    "_elapsed_steps",
-    "topology_index",
-    "pregrasp",
-    "shift",
-    "_true_shift",
-    "_start_pos",
-    "hover_shift",
-    "_palm",
-    "_distance_error",
-    "_last_action",
-    "_touch",
-)
-"""What the task remembers of an episode beside `Outcome` and `OffsetModel`."""
-
-
-def _one_of(name: str, value: str, allowed: Sequence[str]) -> str:
-    if value not in allowed:
-        raise InputError(f"{name} must be one of {', '.join(allowed)}, got {echo(value)}")
-    return value
-
-
-def _resolve_topologies(topology: str | Sequence[str], control_mode: str | None) -> list[Topology]:
-    """Topologies of the environments, which a `pd_synergy_<slug>` must not contradict."""
-    if isinstance(topology, str):
-        topology = [t.name for t in TOPOLOGIES] if topology == "all" else [topology]
-    topologies = [resolve_topology(name) for name in topology]
-    own = [t for t in TOPOLOGIES if control_mode == f"pd_synergy_{t.slug}"]
-    if own and topologies != own:
-        names = ", ".join(t.name for t in topologies)
-        raise InputError(f"control mode {control_mode!r} closes {own[0].name!r}, not {names!r}")
-    return topologies
-
-
-def _resolve_objects(objects: str | Sequence[str]) -> list[str]:
-    if isinstance(objects, str):
-        if objects in ("train", "test"):
-            return list(library.names(objects))
-        return list(library.names()) if objects == "all" else [objects]
-    if not objects:
-        raise InputError("objects must name at least one object, got an empty list")
-    return list(objects)
 
 
 class TaskGraspEnv(CpuBatchMixin, BaseEnv):
@@ -139,12 +87,12 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         control_mode: str | None = "pd_synergy",
         **kwargs: Any,
     ) -> None:
-        self.topologies = _resolve_topologies(topology, control_mode)
-        self.object_names = _resolve_objects(objects)
+        self.topologies = resolve_topologies(topology, control_mode)
+        self.object_names = resolve_objects(objects)
         self._presentation = presentation
         self._noise = resolve_noise(noise)
-        self._distance = _one_of("distance", distance, DISTANCES)
-        self._obs = _one_of("obs", obs, OBSERVATIONS)
+        self._distance = one_of("distance", distance, DISTANCES)
+        self._obs = one_of("obs", obs, OBSERVATIONS)
         self._weights = rewards.RewardWeights()
         super().__init__(*args, robot_uids=robot_uids, control_mode=control_mode, **kwargs)
 
@@ -181,8 +129,11 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         scene.build_table(self.scene)
         self.placements = [self._placement(env) for env in range(self.num_envs)]
         self.obj, self.fixture = scene.build_objects(self.scene, self.placements)
-        self._randomize_physics()
+        rngs = [self._batched_episode_rng[env] for env in range(self.num_envs)]
+        scene.randomize(self.obj, self.agent.robot, self.placements, self._noise, rngs)
+        self._prepare_hand()
         self._prepare_planning()
+        self._prepare_memory()
 
     def _placement(self, env: int) -> Placement:
         draw = self._batched_episode_rng[env].randint(2**31)
@@ -191,19 +142,6 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         name = self.object_names[index % len(self.object_names)]
         topology = self.topologies[env % len(self.topologies)]
         return place(library.load(name), self._presentation, topology=topology)
-
-    def _randomize_physics(self) -> None:
-        """Friction and mass of each environment's object, set before the first physics step."""
-        for env, placement in enumerate(self.placements):
-            rng = self._batched_episode_rng[env]
-            friction = draw_friction(self._noise, placement.model.friction, rng)
-            body = self.obj._bodies[env]
-            factor = rng.uniform(*self._noise.mass)
-            body.set_mass(body.mass * factor)
-            body.set_inertia(body.inertia * factor)
-            scene.set_friction(body, friction)
-            for link in self.agent.robot.links:
-                scene.set_friction(link._bodies[env], friction)
 
     def _after_reconfigure(self, options: dict) -> None:
         """Contact queries exist once the simulation runs."""
@@ -217,67 +155,50 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             ObjectSurfaces.of([surface_of(p.model) for p in self.placements], self.device),
         )
 
-    # Planning
+    def _prepare_hand(self) -> None:
+        part_links = self.agent.part_links.values()
+        self._hand_links = [link for links in part_links for link in links]
+        names = [link.name for link in self._hand_links]
+        self._surfaces = ContactSurfaces(self.agent.hand, names, self.device)
 
     def _prepare_planning(self) -> None:
         agent, device = self.agent, self.device
         kinematics = ArticulationKinematics.of(agent.robot)
-        self._hand_links = [link for links in agent.part_links.values() for link in links]
-        link_names = [link.name for link in self._hand_links]
-        self._surfaces = ContactSurfaces(agent.hand, link_names, device)
         self.planner = PregraspPlanner(agent.hand, agent.part_primitives, kinematics)
         limits = agent.robot.get_qlimits()[0, agent.arm_indices]
         root = Pose.create(scene.ROBOT_POSE, device=device).raw_pose[0]
         ik = ArmIK(kinematics, agent.arm_indices, agent.hand.palm_frame, limits, root)
         self._plan_book = PlanBook(self.planner, ik, device)
-        n = self.num_envs
-        tensor = lambda rows: torch.tensor(np.stack(rows), dtype=torch.float32, device=device)  # noqa: E731
-        self.nominal_pose = tensor(
-            [np.concatenate([p.position, p.quat_wxyz]) for p in self.placements]
+        poses = [np.concatenate([p.position, p.quat_wxyz]) for p in self.placements]
+        self.nominal_pose = self._rows(poses)
+        self._fixture_pose = self._rows([p.fixture_pose for p in self.placements])
+
+    def _prepare_memory(self) -> None:
+        num_actions = self.agent.single_action_space.shape[0]
+        self._memory = EpisodeMemory(
+            self.num_envs, len(self._hand_links), num_actions, self._distance, self.device
         )
-        self._fixture_pose = tensor([p.fixture_pose for p in self.placements])
-        self._extents = tensor([p.extents for p in self.placements])
-        self.topology_index = torch.zeros(n, dtype=torch.long, device=device)
-        self.pregrasp = torch.zeros(n, 6, device=device)
-        error = sum(DISTANCE_ERROR) / 2 if self._distance == "noisy" else 0.0
-        self._filter = OffsetFilter(n, len(PARTS), error, device)
-        self._palm = torch.zeros(n, 3, device=device)
-        self.shift = torch.zeros(n, 3, device=device)
-        self.hover_shift = torch.zeros(n, 3, device=device)
-        self._true_shift = torch.zeros(n, 3, device=device)
-        self._start_pos = torch.zeros(n, 3, device=device)
-        self._distance_error = torch.zeros(n, len(PARTS), device=device)
-        self._last_action = torch.zeros(n, self.agent.single_action_space.shape[0], device=device)
-        self.outcome = Outcome(n, len(link_names), device)
-        self._named_parts = torch.tensor(
-            [[part in t.parts for part in PARTS] for t in TOPOLOGIES], device=device
-        )
-        self._topology_code = torch.eye(len(TOPOLOGIES), device=device)
-        phases = phase_at(torch.arange(MAX_EPISODE_STEPS + 1, device=device))
-        self._phase_of_step = torch.eye(len(PHASES), device=device)[
-            phases.clamp(max=len(PHASES) - 1)
-        ]
-        fingers = [part not in ("palm", "thumb") for part in PARTS]
-        self._finger_parts = torch.tensor(fingers, device=device)
-        self._touch = torch.zeros(n, len(link_names), 3, device=device)
+        self._facts = KnownFacts(self._rows([p.extents for p in self.placements]))
+        self._roles = rewards.PartRoles.of_topologies(self.device)
+
+    def _rows(self, rows: list[Any]) -> Tensor:
+        """One row for each environment."""
+        return torch.tensor(np.stack(rows), dtype=torch.float32, device=self.device)
+
+    # Episode
 
     def _initialize_episode(self, env_idx: Tensor, options: dict) -> None:
-        topologies = self._draw_topologies(env_idx, options)
-        self.topology_index[env_idx] = torch.tensor(
-            [t.index for t in topologies], device=self.device
-        )
+        memory, topologies = self._memory, self._draw_topologies(env_idx, options)
+        indices = [t.index for t in topologies]
+        memory.topology_index[env_idx] = torch.tensor(indices, device=self.device)
         plans = self._plan(env_idx, topologies, options)
-        self.pregrasp[env_idx] = plans.pregrasp
-        self._palm[env_idx] = palm_path(plans.pregrasp, torch.zeros_like(self._palm[env_idx])).grasp
-        self._filter.reset(env_idx)
-        self.shift[env_idx] = 0.0
-        self.hover_shift[env_idx] = 0.0
+        memory.pregrasp[env_idx] = plans.pregrasp
         self._place_robot(env_idx, plans)
-        self._place_objects(env_idx)
-        self._last_action[env_idx] = 0.0
-        self._touch = self._touch.clone()  # Readings that were handed out keep theirs.
-        self._touch[env_idx] = 0.0
-        self.outcome.reset(env_idx, plans.reachable)
+        self._place_objects(env_idx, plans)
+        memory.last_action[env_idx] = 0.0
+        memory.touch = memory.touch.clone()  # Readings that were handed out keep theirs.
+        memory.touch[env_idx] = 0.0
+        memory.outcome.reset(env_idx, plans.reachable)
         self._reading = None
 
     def _draw_topologies(self, env_idx: Tensor, options: dict) -> list[Topology]:
@@ -301,7 +222,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         self.agent.reset(torch.from_numpy(self.agent.full_qpos(arm, hand)).to(self.device))
         self.agent.set_plan(env_idx, plans.path, plans.preshape, plans.closing, LIFT_START)
 
-    def _place_objects(self, env_idx: Tensor) -> None:
+    def _place_objects(self, env_idx: Tensor, plans: Plans) -> None:
         rng = self._batched_episode_rng[env_idx]
         draws = draw_offsets(self._noise, rng.uniform(-1, 1, size=3))
         offsets = torch.tensor(draws, dtype=torch.float32, device=self.device)
@@ -309,14 +230,11 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         pose = displaced(self.nominal_pose[env_idx], centre, offsets)
         self.obj.set_pose(Pose.create(pose))
         self.fixture.set_pose(Pose.create(displaced(self._fixture_pose[env_idx], centre, offsets)))
-        self._true_shift[env_idx] = following(offsets, self._palm[env_idx])
-        self._start_pos[env_idx] = pose[:, :3]
+        palm = palm_path(plans.pregrasp, centre).grasp
+        self._memory.true_shift[env_idx] = following(offsets, palm)
+        self._memory.start_pos[env_idx] = pose[:, :3]
         errors = rng.uniform(-1, 1, size=2 * len(PARTS)).reshape(-1, 2, len(PARTS))
-        low, high = DISTANCE_ERROR
-        size = low + (high - low) * np.abs(errors[:, 0])
-        self._distance_error[env_idx] = torch.tensor(
-            np.sign(errors[:, 1]) * size, dtype=torch.float32, device=self.device
-        )
+        self._memory.estimate.reset(env_idx, palm, errors)
 
     # State
 
@@ -329,13 +247,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
 
     def _episode(self) -> dict[str, Tensor]:
         """Everything that the task remembers of the running episodes, each (num_envs, ...)."""
-        own = {name.removeprefix("_"): getattr(self, name) for name in EPISODE_FIELDS}
-        return {
-            **own,
-            "offset_mean": self._filter.mean,
-            "offset_covariance": self._filter.covariance,
-            **vars(self.outcome),
-        }
+        return {"elapsed_steps": self._elapsed_steps, **self._memory.fields()}
 
     def get_state_dict(self) -> dict[str, Any]:
         """ManiSkill's state, with what controllers and task remember of the episode."""
@@ -362,40 +274,32 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
     # Sensing
 
     def _step_action(self, action: Any) -> Any:
-        action = super()._step_action(action)
+        action, memory = super()._step_action(action), self._memory
         if action is not None:
-            self._last_action = action.reshape(self.num_envs, -1).clone()
+            memory.last_action = action.reshape(self.num_envs, -1).clone()
         self._reading = reading = self._senses.read()
-        self._touch = reading.local_forces
+        memory.touch = reading.local_forces
         speed = self.obj.linear_velocity.norm(dim=1)
-        self.outcome.record(self._lift(), reading.local_forces, speed)
-        self._estimate_shift()
+        memory.outcome.record(self._lift(), reading.local_forces, speed)
+        if self._obs == "full":
+            step, imagined = self._elapsed_steps, self._senses.imagined
+            memory.estimate.update(step, reading, self.nominal_pose, imagined)
         return action
 
-    def _estimate_shift(self) -> None:
-        """Sensing tells how far the palm must move to stand to the object as planned."""
-        if self._obs != "full":
-            return
-        step, reading = self._elapsed_steps, self.reading
-        times = FEELS if self._distance == "none" else LOOKS
-        rows = torch.isin(step, self._tensor_of(times)).nonzero()[:, 0]
-        if len(rows):
-            link_poses, nominal = reading.link_poses[rows], self.nominal_pose[rows]
+    @property
+    def outcome(self) -> Outcome:
+        """What has become of the running episodes."""
+        return self._memory.outcome
 
-            def expected(offset: Tensor) -> Tensor:
-                pose = displaced(nominal, torch.zeros_like(offset), offset)
-                return self._senses.imagined(rows, link_poses, pose)
+    @property
+    def shift(self) -> Tensor:
+        """(num_envs, 3) [m, m, rad] palm displacement that sensing says would restore the plan."""
+        return self._memory.estimate.shift
 
-            if self._distance == "none":
-                self._filter.feel(rows, reading.forces[rows], expected)
-            else:
-                self._filter.look(rows, self._sensed_distances()[rows], expected)
-            self.shift[rows] = following(self._filter.mean[rows, :3], self._palm[rows])
-        hovering = (step < PHASE_ENDS[HOVER])[:, None]
-        self.hover_shift = torch.where(hovering, self.shift, self.hover_shift)
-
-    def _tensor_of(self, steps: tuple[int, ...]) -> Tensor:
-        return torch.tensor(steps, device=self.device)
+    @property
+    def hover_shift(self) -> Tensor:
+        """(num_envs, 3) [m, m, rad] the same, as it was known when the hover ended."""
+        return self._memory.estimate.hover_shift
 
     def needed_shift(self) -> Tensor:
         """(num_envs, 3) [m, m, rad] palm displacement that would restore the planned grasp.
@@ -403,8 +307,8 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         Privileged: for rewards and teachers, never observed. The object's turn counts as at the
         start, its place as it is now.
         """
-        pushed = self.obj.pose.p[:, :2] - self._start_pos[:, :2]
-        return self._true_shift + torch.nn.functional.pad(pushed, (0, 1))
+        pushed = self.obj.pose.p[:, :2] - self._memory.start_pos[:, :2]
+        return self._memory.true_shift + torch.nn.functional.pad(pushed, (0, 1))
 
     def _palm_shift(self) -> Tensor:
         """(num_envs, 3) [m, m, rad] x, y and yaw by which the palm was moved off its path."""
@@ -417,11 +321,11 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
     def reading(self) -> Reading:
         """What the hand feels now."""
         if self._reading is None:
-            self._reading = self._senses.read(self._touch)
+            self._reading = self._senses.read(self._memory.touch)
         return self._reading
 
     def _lift(self) -> Tensor:
-        return self.reading.height - self._start_pos[:, 2]
+        return self.reading.height - self._memory.start_pos[:, 2]
 
     def evaluate(self) -> dict[str, Tensor]:
         reading, lift = self.reading, self._lift()
@@ -447,7 +351,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         # The thumb's rotation counts as commanded: its contact bends it back (facts: grasping, 6).
         command = self.agent.controller.controllers["hand"].command
         thumb = command[:, self.agent.thumb_rotation]
-        return in_topology(shares, self.topology_index, thumb, pip)
+        return in_topology(shares, self._memory.topology_index, thumb, pip)
 
     # Observation
 
@@ -455,32 +359,20 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         if self._obs == "paper":
             return {}
         qpos = self.agent.robot.get_qpos()[:, self.agent.actuator_indices]
-        return {"qpos": qpos, "last_action": self._last_action, **self.agent.controller.get_state()}
-
-    def _get_obs_extra(self, info: dict) -> dict[str, Tensor]:
-        forces = self.reading.forces
-        sensed = {"forces": forces, "distances": self._sensed_distances()}
-        if self._obs == "paper":
-            return sensed
-        step = self._elapsed_steps
         return {
-            **sensed,
-            "phase": self._phase_of_step[step.clamp(max=MAX_EPISODE_STEPS).long()],
-            "progress": (step / MAX_EPISODE_STEPS)[:, None],
-            "topology": self._topology_code[self.topology_index],
-            "extents": self._extents,
-            "pregrasp": self.pregrasp,
-            "shift": self.shift,
+            "qpos": qpos,
+            "last_action": self._memory.last_action,
+            **self.agent.controller.get_state(),
         }
 
-    def _sensed_distances(self) -> Tensor:
-        """(num_envs, num_parts) [m] as the chosen track knows them."""
-        distances = self.reading.distances
-        if self._distance == "none":
-            return torch.zeros_like(distances)
-        if self._distance == "noisy":
-            return (distances + self._distance_error).clamp(min=0)
-        return distances
+    def _get_obs_extra(self, info: dict) -> dict[str, Tensor]:
+        reading, memory = self.reading, self._memory
+        distances = memory.estimate.sensed(reading.distances)
+        sensed = {"forces": reading.forces, "distances": distances}
+        if self._obs == "paper":
+            return sensed
+        plan = memory.topology_index, memory.pregrasp, memory.estimate.shift
+        return {**sensed, **self._facts(self._elapsed_steps, *plan)}
 
     # Reward
 
@@ -493,15 +385,14 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
 
     def reward_terms(self, info: dict[str, Tensor]) -> dict[str, Tensor]:
         """Unweighted terms, each (num_envs,) in [0, 1]."""
-        named = self._named_parts[self.topology_index]
-        opposing = named & ~self._finger_parts
+        named, opposing, fingers = self._roles.of(self._memory.topology_index)
         forces, distances = info["part_forces"], self.reading.distances
         lift = rewards.lift_term(info["lift"], LIFT_HEIGHT)
         return {
             "centre": rewards.centre_term(self.needed_shift() - self._palm_shift()),
             "reach": rewards.reach_term(distances, named),
             "contact": rewards.contact_term(forces, named),
-            "balance": rewards.balance_term(forces, opposing, named & self._finger_parts),
+            "balance": rewards.balance_term(forces, opposing, fingers),
             "form": info["fidelity"] * lift,
             "lift": lift,
             "success": info["success"].float(),

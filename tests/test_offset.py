@@ -156,7 +156,7 @@ def test_rules_bring_the_palm_nearer(blind_env, rule):
         blind_env.step(policy(None))
     lacking = blind_env.needed_shift() - blind_env._palm_shift()
     # Across the fingers (x); along a long object distances tell little, and it matters little.
-    assert lacking[:, 0].abs().mean() < 0.4 * blind_env._true_shift[:, 0].abs().mean()
+    assert lacking[:, 0].abs().mean() < 0.4 * blind_env._memory.true_shift[:, 0].abs().mean()
 
 
 def test_a_guarded_part_waits_until_the_other_side_touches(blind_env, monkeypatch):

@@ -170,7 +170,8 @@ def hand_shapes(env, env_idx):
         for link in env.agent.part_links[part]:
             body = link._bodies[env_idx]
             own = [b for name, b in PART_PRIMITIVES[part] if name == link.name]
-            for primitive, shape in zip(own, body.collision_shapes, strict=True):
+            # The palm's link carries the arm's last one as well: its shapes come after its own.
+            for primitive, shape in zip(own, body.collision_shapes, strict=False):
                 if any(primitive is one for one in sensed[part]):
                     found[part].append(placed(core(shape)[0], body))
     return found

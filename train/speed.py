@@ -111,7 +111,7 @@ def measure_ours(num_envs: int, processes: int, repeats: int, cores: int) -> Spe
     before = _memory()
     base = _make(num_envs, processes)
     base.reset(seed=0)
-    acts = [torch.zeros_like(base._last_action), torch.ones_like(base._last_action)]
+    acts = [torch.zeros_like(base._memory.last_action), torch.ones_like(base._memory.last_action)]
     wall, cpu = [], []
     for repeat in range(repeats + 1):  # The first one warms up and is not counted.
         base.reset(seed=repeat)

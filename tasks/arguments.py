@@ -1,0 +1,54 @@
+"""What the task's arguments may be, and what they stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from maniskill_taskgrasp.assets.objects import library
+from maniskill_taskgrasp.errors import InputError, echo
+from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
+
+DISTANCES = ("exact", "noisy", "none")
+OBSERVATIONS = ("full", "paper")
+
+
+def one_of(name: str, value: str, allowed: Sequence[str]) -> str:
+    """The value, if it is allowed.
+
+    Raises:
+        InputError: it is not.
+    """
+    if value not in allowed:
+        raise InputError(f"{name} must be one of {', '.join(allowed)}, got {echo(value)}")
+    return value
+
+
+def resolve_topologies(topology: str | Sequence[str], control_mode: str | None) -> list[Topology]:
+    """Topologies of the environments, from a name, several or "all".
+
+    Raises:
+        InputError: an unknown name, or one that a `pd_synergy_<slug>` contradicts.
+    """
+    if isinstance(topology, str):
+        topology = [t.name for t in TOPOLOGIES] if topology == "all" else [topology]
+    topologies = [resolve_topology(name) for name in topology]
+    own = [t for t in TOPOLOGIES if control_mode == f"pd_synergy_{t.slug}"]
+    if own and topologies != own:
+        names = ", ".join(t.name for t in topologies)
+        raise InputError(f"control mode {control_mode!r} closes {own[0].name!r}, not {names!r}")
+    return topologies
+
+
+def resolve_objects(objects: str | Sequence[str]) -> list[str]:
+    """Object names or mesh files, from one, several, a split ("train", "test") or "all".
+
+    Raises:
+        InputError: an empty list.
+    """
+    if isinstance(objects, str):
+        if objects in ("train", "test"):
+            return list(library.names(objects))
+        return list(library.names()) if objects == "all" else [objects]
+    if not objects:
+        raise InputError("objects must name at least one object, got an empty list")
+    return list(objects)
