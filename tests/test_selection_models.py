@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from maniskill_taskgrasp.knowledge import load_knowledge
-from maniskill_taskgrasp.selection import targets
+from maniskill_taskgrasp.selection import learning, targets
 from maniskill_taskgrasp.selection.baselines import by_pair
 from maniskill_taskgrasp.selection.dataset import load_table
 from maniskill_taskgrasp.selection.ensemble import tempered
@@ -166,7 +166,7 @@ def test_test_labels_do_not_reach_the_prediction(small_table):
         grasps=asked.grasps[permuted],
         durations=asked.durations[permuted],
     )
-    models = {"trees": all_models()["trees"], "pair": by_pair}
+    models = {name: all_models()[name] for name in ("trees", "pair")}
     models["ours"] = lambda kept, t, _: _predicted(kept, t)
     for model in models.values():
         first, second = (model(small_table.take(train), t, "objects") for t in (asked, shuffled))
@@ -195,6 +195,21 @@ def test_pair_table_reproduces_the_published_baseline(table, tmp_path):
     assert 100 * row["own@1"][0] == pytest.approx(51.2, abs=0.05)
     assert 100 * row["o"][0] == pytest.approx(69.9, abs=0.05)
     assert 100 * row["p"][0] == pytest.approx(67.1, abs=0.05)
+
+
+def test_learning_curve_ends_at_the_whole_training_set(small_table, monkeypatch):
+    """All groups used is the recipe scored as it is; half of them is another fit."""
+    monkeypatch.setattr(learning, "SHARES", (0.5, 1.0))
+    recipe, fits = Recipe(perceptrons=SMALL), []
+    half, whole = learning.learning_curve(small_table, "pairs", recipe, 0, lambda: fits.append(1))
+    log_losses = []
+    for train, test in folds_of(small_table, "pairs"):
+        asked = small_table.take(test)
+        scores = _predicted(small_table.take(train), asked).scores
+        log_losses.append(-np.log(scores[np.arange(len(asked)), asked.topology]).mean())
+    assert whole["NLL"][0] == pytest.approx(np.mean(log_losses), rel=1e-6)
+    assert half["NLL"][0] != pytest.approx(whole["NLL"][0], rel=1e-6)
+    assert len(fits) == 10
 
 
 def test_leak_guard_fires():

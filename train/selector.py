@@ -25,7 +25,7 @@ from maniskill_taskgrasp.selection.ceiling import ceilings
 from maniskill_taskgrasp.selection.dataset import GraspTable, load_table
 from maniskill_taskgrasp.selection.figures import write_figures
 from maniskill_taskgrasp.selection.fit import EnsembleConfig
-from maniskill_taskgrasp.selection.learning import SHARES, learning_curve
+from maniskill_taskgrasp.selection.learning import CURVES, SHARES, learning_curve
 from maniskill_taskgrasp.selection.models import all_models
 from maniskill_taskgrasp.selection.paper_protocol import PaperConfig, train_leaking
 from maniskill_taskgrasp.selection.recipe import Recipe, fit_selector
@@ -53,7 +53,7 @@ class SelectorConfig:
     paper: PaperConfig = field(default_factory=PaperConfig)
     """The paper protocol's recipe."""
     learning_curve: bool = False
-    """Score our recipe on new objects with ever more training objects."""
+    """Score our recipe on new pairs and objects with ever more of them in training."""
     ship: bool = False
     """Train on all rows and write the checkpoint."""
     out: Path = CHECKPOINT
@@ -131,8 +131,11 @@ def main(config: SelectorConfig) -> None:
         score(config, table, results)
     if config.learning_curve:
         recipe = Recipe(perceptrons=EnsembleConfig(seed=config.seed))
-        with tqdm(total=len(SHARES) * FOLDS, unit="fit") as bar:
-            results["learning"] = learning_curve(table, recipe, config.seed, bar.update)
+        with tqdm(total=len(CURVES) * len(SHARES) * FOLDS, unit="fit") as bar:
+            results["learning"] = {
+                split: learning_curve(table, split, recipe, config.seed, bar.update)
+                for split in CURVES
+            }
     results["ceilings"] = ceilings(table)
     results = _rounded(results)
     partial = path.with_suffix(".partial")

@@ -75,23 +75,27 @@ def logistic(train: GraspTable, test: GraspTable, split: str) -> Prediction:
 
 def trees(train: GraspTable, test: GraspTable, split: str) -> Prediction:
     """300 extremely randomised trees."""
-    from sklearn.ensemble import ExtraTreesClassifier
-
-    return _classified(
-        train, test, lambda: ExtraTreesClassifier(300, min_samples_leaf=2, random_state=0)
-    )
+    return _classified(train, test, make_trees)
 
 
 def boosting(train: GraspTable, test: GraspTable, split: str) -> Prediction:
     """Histogram gradient boosting."""
+    return _classified(train, test, make_boosting)
+
+
+def make_trees() -> Any:
+    """The untrained trees."""
+    from sklearn.ensemble import ExtraTreesClassifier
+
+    return ExtraTreesClassifier(300, min_samples_leaf=2, random_state=0)
+
+
+def make_boosting() -> Any:
+    """The untrained boosting."""
     from sklearn.ensemble import HistGradientBoostingClassifier
 
-    return _classified(
-        train,
-        test,
-        lambda: HistGradientBoostingClassifier(
-            learning_rate=0.05, max_iter=80, max_leaf_nodes=8, l2_regularization=5.0, random_state=0
-        ),
+    return HistGradientBoostingClassifier(
+        learning_rate=0.05, max_iter=80, max_leaf_nodes=8, l2_regularization=5.0, random_state=0
     )
 
 
@@ -107,8 +111,6 @@ def _classified(
     described = describer(known.pairs)
     layout = InputLayout.fit(described)
     inputs = layout(described)
-    mean, scale = inputs.mean(0), inputs.std(0)
-    scale[scale < 1e-6] = 1
     pair, topology = np.nonzero(known.counts)
     seen = known.counts[pair, topology]
     if rows:
@@ -116,8 +118,23 @@ def _classified(
         weights = {}
     else:
         weights = {"sample_weight": seen * known.counts.sum(1)[pair] ** -0.5}
-    classifier = make().fit(((inputs - mean) / scale)[pair], topology, **weights)
-    found = np.full((len(asked.pairs), NUM_TOPOLOGIES), FLOOR)
-    asked_inputs = (layout(describer(asked.pairs)) - mean) / scale
-    found[:, classifier.classes_] += classifier.predict_proba(asked_inputs)
-    return Prediction((found / found.sum(1, keepdims=True))[asked.pair_of_row])
+    classifier, asked_inputs = make(), scaled(layout(describer(asked.pairs)), inputs)
+    found = learned(classifier, scaled(inputs, inputs)[pair], topology, asked_inputs, **weights)
+    return Prediction(found[asked.pair_of_row])
+
+
+def scaled(inputs: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """Columns scaled by mean and deviation of `reference`; constant ones are only centred."""
+    scale = reference.std(0)
+    scale[scale < 1e-6] = 1
+    return (inputs - reference.mean(0)) / scale
+
+
+def learned(
+    classifier: Any, inputs: np.ndarray, topology: np.ndarray, asked: np.ndarray, **weights: Any
+) -> np.ndarray:
+    """(m, 15) probabilities for `asked` (m, width) after training on inputs (n, width)."""
+    classifier.fit(inputs, topology, **weights)
+    found = np.full((len(asked), NUM_TOPOLOGIES), FLOOR)
+    found[:, classifier.classes_] += classifier.predict_proba(asked)
+    return found / found.sum(1, keepdims=True)

@@ -1,12 +1,14 @@
-"""The report's pictures: thresholds, confusion, training time under the leak, learning curve."""
+"""The report's pictures: thresholds, confusion, training time, learning curves, sureness."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
-from maniskill_taskgrasp.selection.targets import MEMORISED, PAPER
+from maniskill_taskgrasp.selection.targets import ECE_TARGETS, MEMORISED, PAPER, TARGETS
 from maniskill_taskgrasp.topology import OPPOSITIONS, PIPS
+
+SPLIT_COLOURS = ("tab:blue", "tab:green")
 
 
 def write_figures(results: dict[str, Any], folder: Path) -> list[Path]:
@@ -22,6 +24,10 @@ def write_figures(results: dict[str, Any], folder: Path) -> list[Path]:
         leaking = results.get("paper")
         written.append(_thresholds(honest, leaking, folder / "thresholds.png"))
         written.append(_confusion(honest, leaking, folder / "confusion.png"))
+    ours = results.get("honest", {}).get("ours", {})
+    if ours:
+        floor = results.get("ceilings", {}).get("left out", {}).get("own@1")
+        written.append(_sureness(ours, floor, folder / "sureness.png"))
     if "learning" in results:
         written.append(_learning(results["learning"], folder / "learning.png"))
     return written
@@ -88,20 +94,63 @@ def _confusion(honest: dict[str, Any], leaking: dict[str, Any] | None, path: Pat
     return _saved(figure, path)
 
 
-def _learning(points: list[dict[str, Any]], path: Path) -> Path:
-    """Accuracy on new objects over the share of objects trained on."""
+def _learning(curves: dict[str, list[dict[str, Any]]], path: Path) -> Path:
+    """Row-weighted figures on new pairs and objects over the share trained on, with the targets."""
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(figsize=(5.5, 3.8))
-    shares = [100 * point["share"] for point in points]
-    for metric, colour in (("own@1", "tab:blue"), ("own@3", "tab:green")):
-        for weighting, style in ((0, "-"), (1, "--")):
-            label = f"{metric}, {('rows', 'pairs')[weighting]}"
-            values = [100 * point[metric][weighting] for point in points]
-            axes.plot(shares, values, color=colour, linestyle=style, marker="o", label=label)
-    axes.set(xlabel="training objects used [%]", ylabel="[%]", title="New objects")
-    axes.legend()
+    figure, axes = plt.subplots(1, 3, figsize=(11, 3.6))
+    for axis, metric in zip(axes, ("own@1", "NLL", "ECE"), strict=True):
+        scale = 1 if metric == "NLL" else 100
+        for (split, points), colour in zip(curves.items(), SPLIT_COLOURS, strict=False):
+            shares = [100 * point["share"] for point in points]
+            values = [scale * point[metric][0] for point in points]
+            axis.plot(shares, values, color=colour, marker="o", label=f"new {split}")
+            axis.axhline(
+                scale * _target(split, metric), color=colour, linestyle="--", linewidth=0.8
+            )
+        axis.set(xlabel="share of them in training [%]", title=f"{metric}, by rows")
+    axes[0].legend(title="dashed: target")
     return _saved(figure, path)
+
+
+def _sureness(ours: dict[str, Any], floor: float | None, path: Path) -> Path:
+    """Figures by rows with the spread that the choice of what was filmed gives them.
+
+    `floor` is the own@1 of one who knows the pair's other rows.
+    """
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, 3, figsize=(11, 3.6))
+    for axis, metric in zip(axes, ("own@1", "NLL", "ECE"), strict=True):
+        scale = 1 if metric == "NLL" else 100
+        axis.use_sticky_edges = False
+        for place, (split, figures) in enumerate(ours.items()):
+            measured, (low, high) = _with_range(figures, metric)
+            axis.bar(place, scale * (high - low), 0.25, scale * low, color="lightsteelblue")
+            axis.plot(place, scale * measured, "o", color="tab:blue")
+            axis.plot(place, scale * _target(split, metric), "_", color="tab:red", markersize=22)
+        axis.set_xticks(range(len(ours)), list(ours))
+        axis.set(xlim=(-0.5, len(ours) - 0.5), title=f"{metric}, by rows")
+    if floor is not None:
+        axes[0].axhline(100 * floor, color="grey", linewidth=0.8)
+        axes[0].text(
+            3.45, 100 * floor + 0.2, "other rows of the pair known", ha="right", fontsize=7
+        )
+    axes[0].set_ylabel("dot: ours; dash: target; bar: 95 %", fontsize=8)
+    axes[2].set_ylabel("bar: 95 % of calibrated models", fontsize=8)
+    return _saved(figure, path)
+
+
+def _with_range(figures: dict[str, Any], metric: str) -> tuple[float, tuple[float, float]]:
+    """A row-weighted figure and the range in which chance puts it."""
+    if metric == "ECE":
+        return figures["ECE"]["row"], (0.0, figures["ECE"]["calibrated"][1])
+    low, high = figures["interval"][metric]
+    return figures["row"][metric][0], (low, high)
+
+
+def _target(split: str, metric: str) -> float:
+    return ECE_TARGETS[split] if metric == "ECE" else TARGETS[split][metric][0]
 
 
 def _each(axes: Any) -> list[Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from maniskill_taskgrasp.selection import baselines
+from maniskill_taskgrasp.selection.committee import committee
 from maniskill_taskgrasp.selection.dataset import GraspTable
 from maniskill_taskgrasp.selection.evidence import condense
 from maniskill_taskgrasp.selection.fit import EnsembleConfig
@@ -58,6 +59,7 @@ def all_models(seed: int = 0) -> dict[str, Model]:
         "logistic": baselines.logistic,
         "boosting": baselines.boosting,
         "trees": baselines.trees,
+        "four": committee,
         "paper": paper(seed),
         "ours": ours(Recipe(perceptrons=EnsembleConfig(seed=seed))),
     }

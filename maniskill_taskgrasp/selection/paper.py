@@ -66,10 +66,16 @@ def paper_features(table: GraspTable, duration: bool = True) -> np.ndarray:
     if duration:
         parts.append(table.durations[:, None])
     parts.append(np.array([indicators(a) for a in affordances]))
-    for column, values in PARAMETER_VALUES.items():
-        parts.append(getattr(table, column)[:, None] == np.array(values))
+    parts.append(parameter_indicators(table))
     parts.append(table.actions[:, None] == np.array(list(load_knowledge().actions)))
     return np.hstack(parts).astype(np.float32)
+
+
+def parameter_indicators(table: GraspTable) -> np.ndarray:
+    """(n, 16) bool: force, constraint and class of each row."""
+    return np.hstack(
+        [getattr(table, c)[:, None] == np.array(v) for c, v in PARAMETER_VALUES.items()]
+    )
 
 
 def paper_width(duration: bool = True) -> int:

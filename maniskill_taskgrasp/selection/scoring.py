@@ -11,10 +11,13 @@ import numpy as np
 
 from maniskill_taskgrasp.selection import metrics
 from maniskill_taskgrasp.selection.dataset import GraspTable
-from maniskill_taskgrasp.selection.splits import folds_of
+from maniskill_taskgrasp.selection.intervals import calibration_floor, group_interval, label_noise
+from maniskill_taskgrasp.selection.splits import folds_of, group_of_rows
 
 TRUSTED_ROWS = 10
 """Pairs with at least this many rows have label sets that can be trusted (83 % of the rows)."""
+INTERVALS_OF = ("own@1", "own@3", "NLL")
+"""Metrics whose spread is reported."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,42 +59,66 @@ def evaluate(
 
     Returns:
         {"row" | "pair" | "trusted": {metric: [mean, std]}, "folds": {metric: [row-weighted per
-        fold]}, "pair_folds": likewise, "ECE": {"row", "pair"} pooled over all test rows,
-        "thresholds": [...], "confusion": {...}}; "trusted" is row-weighted over pairs with ten rows
-        or more.
+        fold]}, "pair_folds": likewise, and of all test rows together what `_pooled` says};
+        "trusted" is row-weighted over pairs with ten rows or more.
     """
     weights = metrics.pair_weights(table.pairs)
     often = weights <= 1 / TRUSTED_ROWS
     folds: list[dict[str, tuple[float, float]]] = []
     trusted: list[dict[str, float]] = []
-    pooled: list[tuple[np.ndarray, ...]] = []
+    columns: list[dict[str, np.ndarray]] = []
     found = predictions(name, model, table, split, folder)
-    for (_, test), prediction in zip(folds_of(table, split), found, strict=True):
+    for number, ((_, test), prediction) in enumerate(
+        zip(folds_of(table, split), found, strict=True)
+    ):
         rows = np.flatnonzero(test)
         values = row_values(prediction, table.take(rows))
         folds.append(metrics.summarise(values, weights[rows]))
         trusted.append({key: float(v[often[rows]].mean()) for key, v in values.items()})
-        heads = _heads(prediction)
-        pooled.append((prediction.scores, rows, values["own@1"], *heads))
-    scores, rows, correct, opposition, pip = (
-        np.concatenate(column) for column in zip(*pooled, strict=True)
-    )
-    confidence = scores.max(1) / scores.sum(1)
-    observed = table.topology[rows]
+        opposition, pip = _heads(prediction)
+        columns.append(
+            {
+                **{"rows": rows, "fold": np.full(len(rows), number), "scores": prediction.scores},
+                **{"opposition": opposition, "pip": pip},
+                **{metric: values[metric] for metric in INTERVALS_OF},
+            }
+        )
+    tested = {key: np.concatenate([part[key] for part in columns]) for key in columns[0]}
     return {
         "row": {k: _mean_std([fold[k][0] for fold in folds]) for k in metrics.PER_ROW},
         "pair": {k: _mean_std([fold[k][1] for fold in folds]) for k in metrics.PER_ROW},
         "trusted": {k: _mean_std([fold[k] for fold in trusted]) for k in metrics.PER_ROW},
         "folds": {k: [fold[k][0] for fold in folds] for k in metrics.PER_ROW},
         "pair_folds": {k: [fold[k][1] for fold in folds] for k in metrics.PER_ROW},
+        **_pooled(tested, table, split),
+    }
+
+
+def _pooled(tested: dict[str, np.ndarray], table: GraspTable, split: str) -> dict[str, Any]:
+    """Calibration, spread, threshold curve and confusion over the test rows of all folds.
+
+    Returns:
+        {"ECE": {"row", "pair", "calibrated": (mean, 95th percentile) of a calibrated model},
+        "interval": {metric: [2.5 %, 97.5 %]}, "label_noise": {metric: std}, "thresholds": [...],
+        "confusion": {...}}; interval and noise are of the row-weighted mean over folds.
+    """
+    rows, fold, scores = (tested[key] for key in ("rows", "fold", "scores"))
+    confidence, correct = scores.max(1) / scores.sum(1), tested["own@1"]
+    group, pairs, observed = group_of_rows(table, split)[rows], table.pairs[rows], table.topology
+    weights = metrics.pair_weights(table.pairs)[rows]
+    opposition, pip = metrics.OPPOSITION_OF[observed[rows]], metrics.PIP_OF[observed[rows]]
+    return {
         "ECE": {
             "row": metrics.calibration_error(confidence, correct),
-            "pair": metrics.calibration_error(confidence, correct, weights[rows]),
+            "pair": metrics.calibration_error(confidence, correct, weights),
+            "calibrated": calibration_floor(confidence, correct, group),
         },
+        "interval": {m: group_interval(tested[m], group, fold) for m in INTERVALS_OF},
+        "label_noise": {m: label_noise(tested[m], pairs, fold) for m in INTERVALS_OF},
         "thresholds": metrics.threshold_curve(scores, table.label_sets[rows]),
         "confusion": {
-            "opposition": metrics.confusion(opposition, metrics.OPPOSITION_OF[observed], 3),
-            "pip": metrics.confusion(pip, metrics.PIP_OF[observed], 3),
+            "opposition": metrics.confusion(tested["opposition"], opposition, 3),
+            "pip": metrics.confusion(tested["pip"], pip, 3),
         },
     }
 
