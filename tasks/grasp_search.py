@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 STARTS = 11  # Stored grasps that are tried first.
 SCOOP = np.array([0.0, -0.018, 0.0, 0.25, 0.0, 0.0])  # Palm lower, fingers down: facts, 3.
 GOOD_START = 0.5  # Share of trials in lift and form from which a search stays near its start.
+GOOD_END = 0.8  # Share below which what came of a good start is not good enough.
 NEAR, WIDE = 0.4, 1.0  # Spread of the first generation around a good and a poor start.
 FINALISTS = 8  # Candidates that are tried again after a wide search.
 RIVALS = 3  # Poor starts that share the first generation.
@@ -60,9 +61,9 @@ class SearchBudget:
 
     @property
     def trials(self) -> int:
-        """Most simulated grasps: starts, a check of the best, wide search, its finalists, search
-        about the winner, the final choice."""
-        return self.num_envs * (self.generations + self.first + self.narrow + 3)
+        """Most simulated grasps: starts, a check of the best, search about it, which of the two;
+        wide search, its finalists, search about the winner, the final choice."""
+        return self.num_envs * (self.generations + self.first + 2 * self.narrow + 4)
 
     @property
     def narrow(self) -> int:
@@ -112,9 +113,11 @@ class GraspSearch:
         order = np.argsort([-score[row == i].mean() for i in range(len(starts))], kind="stable")
         best = starts[order[0]]
         lifted, held, _ = self._try(np.tile(best, (self._budget.num_envs, 1)), whole=True)
-        if held.mean() < PROVEN:
-            good = both[row == order[0]].mean() >= GOOD_START and held.mean() >= GOOD_START
-            centre = best if good else self._finalist(self._wide(starts[order[:RIVALS]]))
+        good = both[row == order[0]].mean() >= GOOD_START and held.mean() >= GOOD_START
+        if good and held.mean() < PROVEN:
+            best, lifted, held = self._better(best, self._narrow(best))
+        if held.mean() < (GOOD_END if good else PROVEN):
+            centre = self._finalist(self._wide(starts[order[:RIVALS]]))
             best, lifted, held = self._better(best, self._narrow(centre))
         return SearchResult(
             self._grasp(best, lifted, held),

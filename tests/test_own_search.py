@@ -111,7 +111,7 @@ def test_a_search_counts_its_trials_and_stays_in_bounds(monkeypatch):
     monkeypatch.setattr(grasp_search, "PROVEN", 1.1)  # No start is so good.
     budget = SearchBudget(generations=1, num_envs=8)
     found = own_search.search("screwdriver", PAD, "auto", budget)
-    assert sum(spent) == found.spent <= budget.trials == 56
+    assert sum(spent) == found.spent <= budget.trials == 72
     pregrasp = np.array(found.grasp.pregrasp)
     assert (pregrasp >= PREGRASP_LOWER).all()
     assert (pregrasp <= PREGRASP_UPPER).all()
