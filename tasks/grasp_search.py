@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.tasks.cross_entropy import SearchSpace, cross_entropy
 from maniskill_taskgrasp.tasks.grasp_library import Grasp, nearest_grasps
@@ -102,7 +101,7 @@ class GraspSearch:
         self._budget = budget
         self._known = known
         self._placement = trials.env.placements[0]
-        self._posture = PostureSpace.of(AR10, topology)
+        self._posture = PostureSpace.of(trials.env.agent.hand, topology)
         self._batches = 0
 
     def run(self) -> SearchResult:
@@ -128,7 +127,9 @@ class GraspSearch:
     def _starts(self) -> tuple[list[str], Array]:
         """Names and numbers (k, 14) of what is tried first."""
         placement, topology = self._placement, self._topology
-        stored = nearest_grasps(AR10, topology, placement, STARTS, self._known)
+        stored = nearest_grasps(
+            self._trials.env.agent.hand, topology, placement, STARTS, self._known
+        )
         rule = self._trials.env.planner.bounding_box(topology.slug, placement).numpy()
         own = self._posture.start()
         rows = [self._numbers(grasp) for grasp in stored]
