@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,11 +112,16 @@ class HandSenses:
             link_poses=link_poses,
         )
 
-    def imagined(self, rows: Tensor, link_poses: Tensor, obj_pose: Tensor) -> Tensor:
-        """(n, num_parts) [m] distances of environments (n,) if their objects were elsewhere.
+    def imagining(self, rows: Tensor, link_poses: Tensor) -> Callable[[Tensor], Tensor]:
+        """What distances would be if objects were elsewhere.
 
         Args:
-            link_poses: (n, num_links, 7) [m, wxyz] world.
-            obj_pose: (n, 7) [m, wxyz] world.
+            rows: (n,) environments, rising.
+            link_poses: (n, num_links, 7) [m, wxyz] world, of theirs.
+
+        Returns:
+            object poses (n, 7) [m, wxyz] world -> (n, num_parts) [m].
         """
-        return part_distances(link_poses, self._boxes, self._surfaces.rows(rows), obj_pose)
+        every = len(rows) == len(self._surfaces.centres)
+        surfaces = self._surfaces if every else self._surfaces.rows(rows)
+        return lambda obj_pose: part_distances(link_poses, self._boxes, surfaces, obj_pose)

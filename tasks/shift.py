@@ -70,23 +70,22 @@ class ShiftEstimate:
         step: Tensor,
         reading: Reading,
         nominal_pose: Tensor,
-        imagined: Callable[[Tensor, Tensor, Tensor], Tensor],
+        imagining: Callable[[Tensor, Tensor], Callable[[Tensor], Tensor]],
     ) -> None:
         """Take in what is felt, in the environments where it is time to.
 
         Args:
             step: (num_envs,) control steps taken before this one.
             nominal_pose: (num_envs, 7) [m, wxyz] of the objects, as planned with.
-            imagined: environments (n,), their link poses and object poses (n, 7) -> distances.
+            imagining: `HandSenses.imagining`.
         """
         rows = self._due[step.clamp(max=MAX_EPISODE_STEPS).long()].nonzero()[:, 0]
         if not len(rows):
             return
-        link_poses, nominal = reading.link_poses[rows], nominal_pose[rows]
+        nominal, distances = nominal_pose[rows], imagining(rows, reading.link_poses[rows])
 
         def expected(offset: Tensor) -> Tensor:
-            pose = displaced(nominal, torch.zeros_like(offset), offset)
-            return imagined(rows, link_poses, pose)
+            return distances(displaced(nominal, torch.zeros_like(offset), offset))
 
         if self._track == "none":
             self.filter.feel(rows, reading.forces[rows], expected)

@@ -282,8 +282,8 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         speed = self.obj.linear_velocity.norm(dim=1)
         memory.outcome.record(self._lift(), reading.local_forces, speed)
         if self._obs == "full":
-            step, imagined = self._elapsed_steps, self._senses.imagined
-            memory.estimate.update(step, reading, self.nominal_pose, imagined)
+            step, imagining = self._elapsed_steps, self._senses.imagining
+            memory.estimate.update(step, reading, self.nominal_pose, imagining)
         return action
 
     @property
