@@ -1,6 +1,7 @@
 """Laws of mesh import: what is no graspable solid is refused in one line, and what is one does."""
 
 import json
+import re
 import struct
 import time
 
@@ -9,7 +10,15 @@ import pytest
 import trimesh
 
 from maniskill_taskgrasp import cli
+from maniskill_taskgrasp.assets.objects.closeness import (
+    MAX_PROTRUSION,
+    MAX_VOLUME_ERROR,
+    part_hulls,
+    protrusion,
+    volume_error,
+)
 from maniskill_taskgrasp.assets.objects.commands import import_objects, summary
+from maniskill_taskgrasp.assets.objects.decompose import mend
 from maniskill_taskgrasp.assets.objects.folders import cache_folder, home_folder
 from maniskill_taskgrasp.assets.objects.geometry import part_corners, parts_bounds
 from maniskill_taskgrasp.assets.objects.importer import import_file
@@ -291,6 +300,40 @@ def test_mesh_lying_askew_is_turned_and_one_with_hollows_cut(own_library, tmp_pa
     assert model.volume_m3 == pytest.approx(body.volume, rel=0.01)
 
 
+def cup():
+    """A cup 9 cm high, walls and base of 5 mm."""
+    profile = np.array([[0, 0], [32, 0], [40, 90], [35, 90], [27.5, 5], [0, 5]]) / 1000
+    return trimesh.creation.revolve(profile, sections=48)
+
+
+def test_parts_of_an_import_follow_its_mesh(own_library, tmp_path):
+    """A cup stays hollow: parts within 10 % in volume and 2 mm; nothing to remark."""
+    body = cup()
+    body.export(tmp_path / "cup of mine.stl")
+    (facts,) = import_objects(tmp_path / "cup of mine.stl")
+    model = load("cup of mine")
+    hulls = part_hulls(model.parts)
+    assert facts["watertight"]
+    assert volume_error(model.visual(), hulls) <= MAX_VOLUME_ERROR
+    assert protrusion(model.visual(), hulls) <= MAX_PROTRUSION
+    assert not any("convex parts" in note for note in facts["notes"])
+
+
+def test_parts_that_do_not_follow_their_mesh_are_remarked_on(own_library, tmp_path):
+    """Slots of 6 mm between thirty teeth are more than the parts can follow: a note says so."""
+    teeth = [trimesh.creation.box((0.24, 0.03, 0.01))]
+    for i in range(30):
+        teeth.append(trimesh.creation.box((0.002, 0.03, 0.02)))
+        teeth[-1].apply_translation((-0.116 + 0.008 * i, 0, 0.012))
+    trimesh.boolean.union(teeth, engine="manifold").export(tmp_path / "comb.stl")
+    (facts,) = import_objects(tmp_path / "comb.stl")
+    model = load("comb")
+    beyond = protrusion(model.visual(), part_hulls(model.parts))
+    assert beyond > MAX_PROTRUSION
+    (said,) = re.findall(r"stick out of the mesh by up to ([\d.]+) mm", " ".join(facts["notes"]))
+    assert float(said) == pytest.approx(1000 * beyond, abs=0.5)
+
+
 def test_open_mesh_is_closed_or_said_to_be_open(own_library, tmp_path):
     """A box that lacks a triangle is mended; one whose lid does not share its edges says so."""
     box = trimesh.creation.box((0.06, 0.04, 0.03))
@@ -355,31 +398,58 @@ def test_import_command_prints_one_json_document(own_library, tmp_path, capsys):
     assert {"name", "dimensions_m", "mass_kg", "parts", "watertight", "split"} <= set(facts)
 
 
+def follows_or_says_so(model, notes):
+    """Whether the parts follow the mesh within the limits; if they do not, a note must say so."""
+    mesh, hulls = mend(model.visual()), part_hulls(model.parts)
+    far = protrusion(mesh, hulls) > MAX_PROTRUSION
+    bulky = mesh.is_volume and volume_error(mesh, hulls) > MAX_VOLUME_ERROR
+    assert far == any("stick out of the mesh" in note for note in notes), model.name
+    assert bulky == any("in volume (aim" in note for note in notes), model.name
+    return not (far or bulky)
+
+
 @pytest.mark.slow
 def test_authors_meshes_are_imported(own_library, shared_dir, record_property):
     """All 20, at the size their index states; half take 5 s or less of one core."""
-    folder, seconds = shared_dir / "data" / "meshes", []
+    folder, seconds, close = shared_dir / "data" / "meshes", [], []
     index = json.loads((folder / "index.json").read_text("utf-8"))
     for entry in index:
         start = time.process_time()
-        model, _ = import_file(folder / entry["file"])
+        model, notes = import_file(folder / entry["file"])
         seconds.append(time.process_time() - start)
         assert sorted(model.extents_m) == pytest.approx(sorted(entry["extents_m"]), rel=0.02)
         reach = np.ptp(parts_bounds(model.parts), axis=0)
         np.testing.assert_allclose(reach, model.extents_m, rtol=0.03, atol=1e-3)
+        close.append(follows_or_says_so(model, notes))
     record_property("median_s", float(np.median(seconds)))
+    record_property("within_limits", sum(close))
     assert len(index) == 20
     assert np.median(seconds) <= 5.0
 
 
-@pytest.mark.slow
-def test_grasp_of_a_mesh_file_works_end_to_end(own_library, tmp_path, capsys):
-    """A rolling pin of 3.5 x 14 cm that no library holds: understood, planned for and tried."""
-    path = tmp_path / "pin.stl"
-    trimesh.creation.cylinder(0.0175, 0.14).export(path)
-    cli.main(["grasp", "hand me this", "--object", str(path), "--json"])
+def grasped(path, capsys, *more):
+    """Answer of `taskgrasp grasp` for a mesh file, as a user gets it."""
+    cli.main(["grasp", "hand me this", "--object", str(path), "--json", *more])
     answer = json.loads(capsys.readouterr().out)
-    assert answer["object"] == "pin"
-    assert answer["episodes"] == len(answer["lift_m"]) == 1
     assert answer["topology"] in {ranked["name"] for ranked in answer["strategy"]}
-    assert answer["failure"][0] in ("none", "slipped", "dropped", "not_lifted")  # It was touched.
+    assert answer["episodes"] == len(answer["lift_m"]) == 1
+    return answer
+
+
+@pytest.mark.slow
+def test_mesh_file_of_the_tests_own_is_lifted(own_library, tmp_path, capsys):
+    """A bottle-sized drum that no library holds, with default settings."""
+    path = tmp_path / "drum.stl"
+    trimesh.creation.cylinder(0.0325, 0.125).export(path)
+    answer = grasped(path, capsys)
+    assert answer["object"] == "drum"
+    assert answer["failure"] == ["none"], answer["lift_m"]
+    assert answer["lift_m"][0] >= 0.2
+
+
+@pytest.mark.slow
+def test_mesh_of_the_authors_is_lifted(own_library, shared_dir, capsys):
+    """Their laundry detergent bottle, with default settings."""
+    answer = grasped(shared_dir / "data" / "meshes" / "laundry_detergent_bottle.stl", capsys)
+    assert answer["failure"] == ["none"], answer["lift_m"]
+    assert answer["lift_m"][0] >= 0.2

@@ -5,25 +5,30 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from maniskill_taskgrasp.assets.objects.closeness import MAX_PROTRUSION, part_hulls, protrusion
 from maniskill_taskgrasp.assets.objects.geometry import few_corners
 from maniskill_taskgrasp.assets.objects.model import Part
+from maniskill_taskgrasp.assets.objects.solid import thinned
 
 if TYPE_CHECKING:
     import trimesh
 
 Array = NDArray[np.float64]
 
-MAX_PARTS = 8
+MAX_PARTS = 24
 MAX_DRAWN_FACES = 60_000
 MAX_CUT_FACES = 4_000  # CoACD's time grows with them; its own closing makes as many.
 CONVEX_SHARE = 0.94  # A closed mesh that fills its hull so far is one part.
-CONCAVITY = 0.1  # CoACD's threshold: smaller follows the shape more closely with more parts.
+CONCAVITY = 0.001  # [m] that CoACD leaves in a part, as it measures it,
+MAX_CONCAVITY = 0.1  # at most and at least in halves of the longest extent: finer takes long,
+MIN_CONCAVITY, MIN_OPEN_CONCAVITY = 0.025, 0.05  # and CoACD's closing of open meshes is coarse.
+OUTGROW = 0.0005  # [m] by which a part of few corners may outgrow its shape.
 CRUMB = 0.003  # A part of a smaller share of the volume is left out.
 SNAP_SAMPLES = 20_000
 SEED = 0
@@ -45,29 +50,33 @@ def mend(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
     return mesh
 
 
-def thinned(mesh: trimesh.Trimesh, faces: int) -> trimesh.Trimesh:
-    """The mesh with at most about that many faces."""
-    if len(mesh.faces) <= faces:
-        return mesh
-    return mesh.simplify_quadric_decimation(face_count=faces)
-
-
 def convex_parts(mesh: trimesh.Trimesh) -> tuple[Part, ...]:
-    """At most `MAX_PARTS` convex parts that cover the mesh; one if it is nearly convex.
+    """At most `MAX_PARTS` convex parts that cover the mesh; one if that does as well.
 
     The mesh need not be closed: CoACD closes it first.
     """
-    hull = mesh.convex_hull
-    if mesh.is_volume and mesh.volume >= CONVEX_SHARE * hull.volume:
-        return (Part("convex", vertices=few_corners(hull.vertices)),)
+    whole = _parts([mesh.convex_hull.vertices])
+    hull_volume = float(mesh.convex_hull.volume)
+    if mesh.is_volume and mesh.volume >= CONVEX_SHARE * hull_volume and _follows(mesh, whole):
+        return whole
     pieces = _cut(thinned(mesh, MAX_CUT_FACES))
     if not mesh.is_volume:
         pieces = _snapped(pieces, mesh)
     volumes = [_volume(piece) for piece in pieces]
-    if sum(volumes) >= CONVEX_SHARE * hull.volume:
-        return (Part("convex", vertices=few_corners(hull.vertices)),)
-    kept = [p for p, v in zip(pieces, volumes, strict=True) if v > CRUMB * sum(volumes)]
-    return tuple(Part("convex", vertices=few_corners(piece)) for piece in kept)
+    parts = _parts([p for p, v in zip(pieces, volumes, strict=True) if v > CRUMB * sum(volumes)])
+    # Many parts that miss the limit as well are worth no more than the hull.
+    full = len(parts) > 1 and sum(volumes) >= CONVEX_SHARE * hull_volume
+    if full and (_follows(mesh, whole) or not _follows(mesh, parts)):
+        return whole
+    return parts
+
+
+def _parts(pieces: list[Array]) -> tuple[Part, ...]:
+    return tuple(Part("convex", vertices=few_corners(p, outgrow=OUTGROW)) for p in pieces)
+
+
+def _follows(mesh: trimesh.Trimesh, parts: Sequence[Part]) -> bool:
+    return protrusion(mesh, part_hulls(parts)) <= MAX_PROTRUSION
 
 
 def _cut(mesh: trimesh.Trimesh) -> list[Array]:
@@ -76,11 +85,12 @@ def _cut(mesh: trimesh.Trimesh) -> list[Array]:
 
     coacd.set_log_level("error")
     middle, size = mesh.bounds.mean(axis=0), float(mesh.extents.max())
+    least = MIN_CONCAVITY if mesh.is_volume else MIN_OPEN_CONCAVITY
     body = coacd.Mesh((mesh.vertices - middle) / size, mesh.faces)
     with quiet():
         pieces = coacd.run_coacd(
             body,
-            threshold=CONCAVITY,
+            threshold=float(np.clip(2 * CONCAVITY / size, least, MAX_CONCAVITY)),
             max_convex_hull=MAX_PARTS,
             preprocess_resolution=_closing_resolution(mesh),
             resolution=500,

@@ -214,11 +214,12 @@ def _farthest(points: Array, n: int) -> Array:
     return points[chosen]
 
 
-def few_corners(points: Array, count: int = MAX_CORNERS) -> Array:
+def few_corners(points: Array, count: int = MAX_CORNERS, outgrow: float = np.inf) -> Array:
     """(m <= count, 3) [m] corners whose convex hull has nearly the shape and volume of the points'.
 
     Args:
         points: (n, 3) [m] not all in one plane.
+        outgrow: [m] by which the corners may stand outside the points' hull to make up for volume.
     """
     from scipy.spatial import ConvexHull
 
@@ -234,6 +235,8 @@ def few_corners(points: Array, count: int = MAX_CORNERS) -> Array:
     # Corners farthest in directions spread over the shape stretched to a cube: flat things keep
     # their rims.
     chosen = corners[np.unique(np.argmax((corners - middle) / size @ directions, axis=0))]
-    grow = min((hull.volume / ConvexHull(chosen).volume) ** (1 / 3), MAX_GROWTH)
+    farthest = float(np.linalg.norm(chosen - middle, axis=1).max())
+    most = min(MAX_GROWTH, 1 + outgrow / farthest)
+    grow = min((hull.volume / ConvexHull(chosen).volume) ** (1 / 3), most)
     kept: Array = middle + (chosen - middle) * grow
     return kept

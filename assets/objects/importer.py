@@ -13,18 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maniskill_taskgrasp.assets.objects.affordance import describe
+from maniskill_taskgrasp.assets.objects.closeness import remarks
 from maniskill_taskgrasp.assets.objects.decompose import (
     MAX_DRAWN_FACES,
     convex_parts,
     mend,
-    thinned,
 )
 from maniskill_taskgrasp.assets.objects.geometry import part_corners
 from maniskill_taskgrasp.assets.objects.meshfile import SUFFIXES, RawMesh, read_mesh
 from maniskill_taskgrasp.assets.objects.model import ObjectModel, Part
 from maniskill_taskgrasp.assets.objects.recipe import FRICTION
 from maniskill_taskgrasp.assets.objects.settle import settled_poses, steady_stands
-from maniskill_taskgrasp.assets.objects.solid import union_mesh
+from maniskill_taskgrasp.assets.objects.solid import thinned, union_mesh
 from maniskill_taskgrasp.assets.objects.stable import candidate_poses
 from maniskill_taskgrasp.errors import InputError, echo
 
@@ -38,7 +38,7 @@ MIN_MASS, MAX_MASS = 0.001, 5.0  # [kg] what a user may give.
 MAX_GUESS = 1.0  # [kg] the data set's cap, also of a guessed mass.
 MAX_NAME = 60
 ASKEW = 0.85  # Share of the axis-aligned box's volume below which the smallest box is taken.
-FORMAT = 1  # Raised when the stored form of imported objects changes.
+FORMAT = 2  # Raised when the stored form of imported objects changes.
 
 
 @dataclass(frozen=True)
@@ -67,14 +67,8 @@ def object_from_mesh(
     mesh.apply_transform(placing)
     drawn = thinned(raw.mesh.copy(), MAX_DRAWN_FACES)
     drawn.apply_transform(placing)
-    try:
-        parts = convex_parts(mesh)
-    except Exception as error:
-        raise InputError(
-            f"cannot cut {echo(name)} into convex parts: {type(error).__name__}"
-        ) from None
-    if not parts:
-        raise InputError(f"{echo(name)} encloses no volume")
+    parts = _parts(mesh, name)
+    notes += remarks(mesh, parts)
     closed = bool(mesh.is_volume)
     body = mesh if closed else _union(parts)
     if not closed:
@@ -110,6 +104,18 @@ def object_from_mesh(
         mesh=lambda: drawn,
     )
     return _rested(model), tuple(notes)
+
+
+def _parts(mesh: trimesh.Trimesh, name: str) -> tuple[Part, ...]:
+    try:
+        parts = convex_parts(mesh)
+    except Exception as error:  # CoACD and Qhull raise anything.
+        raise InputError(
+            f"cannot cut {echo(name)} into convex parts: {type(error).__name__}"
+        ) from None
+    if not parts:
+        raise InputError(f"{echo(name)} encloses no volume")
+    return parts
 
 
 def _rested(model: ObjectModel) -> ObjectModel:

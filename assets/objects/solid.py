@@ -89,3 +89,10 @@ def union_mesh(bodies: Sequence[tuple[Array, NDArray[np.int64]]]) -> trimesh.Tri
     if len(meshes) == 1:
         return meshes[0]
     return trimesh.boolean.union(meshes, engine="manifold")
+
+
+def thinned(mesh: trimesh.Trimesh, faces: int) -> trimesh.Trimesh:
+    """The mesh with at most about that many faces."""
+    if len(mesh.faces) <= faces:
+        return mesh
+    return mesh.simplify_quadric_decimation(face_count=faces)
