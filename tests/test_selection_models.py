@@ -134,8 +134,8 @@ def test_temperature_keeps_the_order():
 def test_saved_selector_answers_the_same(small_table, tmp_path):
     """Save and load is a round trip."""
     selector = fit_selector(small_table, Recipe(perceptrons=SMALL))
-    selector.save(tmp_path / "selector.pt", {"note": "test"})
-    again = Selector.load(tmp_path / "selector.pt")
+    selector.save(tmp_path / "selector.npz", {"note": "test"})
+    again = Selector.load(tmp_path / "selector.npz")
     pairs, _ = some_pairs(30, seed=1)
     np.testing.assert_allclose(again.predict(pairs), selector.predict(pairs), atol=1e-5)
 
@@ -233,5 +233,5 @@ def test_committed_page_is_what_the_figures_say():
 
 def test_shipped_checkpoint_is_small():
     """At most 10 MB."""
-    path = files("maniskill_taskgrasp.assets").joinpath("checkpoints/selector.pt")
+    path = files("maniskill_taskgrasp.assets").joinpath("checkpoints/selector.npz")
     assert len(path.read_bytes()) <= 10_000_000

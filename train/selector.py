@@ -35,7 +35,7 @@ from maniskill_taskgrasp.selection.splits import FOLDS, SPLITS
 from maniskill_taskgrasp.selection.targets import leaks
 from maniskill_taskgrasp.selection.tuning import tuned
 
-CHECKPOINT = Path(__file__).resolve().parent.parent / "assets" / "checkpoints" / "selector.pt"
+CHECKPOINT = Path(__file__).resolve().parent.parent / "assets" / "checkpoints" / "selector.npz"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,8 +1,9 @@
-"""The selector's file: a plain dict of tensors and JSON values, checked before it is trusted."""
+"""The selector's file: numpy arrays and one JSON header, checked before it is trusted."""
 
 from __future__ import annotations
 
-import pickle
+import json
+import zlib
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -17,19 +18,24 @@ from maniskill_taskgrasp.selection.features import Described, Describer, Directi
 from maniskill_taskgrasp.selection.kernel import KernelConfig, KernelNetwork
 from maniskill_taskgrasp.selection.mixture import Mixture
 
-FORMAT = "taskgrasp-selector-2"
+FORMAT = "taskgrasp-selector-3"
 PARTS = frozenset(
     ("format", "card", "describer", "kernels", "centres", "perceptrons", "pairs", "counts")
 )
+ARRAY = "array "
+"""What the header has in place of an array starts so; no name of the data set does."""
+DAMAGE = (ValueError, EOFError, KeyError, IndexError, TypeError, AttributeError)
+"""What numpy and json raise on a file that is damaged or of another kind."""
 
 
 def save_checkpoint(path: Path, content: Mapping[str, Any]) -> None:
     """Write a checkpoint whole or not at all."""
-    import torch
-
+    arrays: dict[str, Any] = {}
+    header = json.dumps(_arrays_out(content, arrays))
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(path.name + ".partial")
-    torch.save(dict(content), partial)
+    with partial.open("wb") as file:
+        np.savez_compressed(file, header=np.array(header), **arrays)
     partial.replace(path)
 
 
@@ -39,22 +45,45 @@ def load_checkpoint(path: Path) -> dict[str, Any]:
     Raises:
         InputError: no such file, a damaged file, or a file of another kind.
     """
-    import torch
-
     try:
-        content = torch.load(path, map_location="cpu", weights_only=True)
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+            content = _arrays_in(json.loads(str(arrays["header"])), arrays)
     except OSError as error:
         raise InputError(
             f"cannot read selector checkpoint {str(path)!r}: {error.strerror}; "
             "leave the path out to use the shipped one"
         ) from None
-    except (RuntimeError, ValueError, EOFError, KeyError, BadZipFile, pickle.UnpicklingError):
+    except (*DAMAGE, BadZipFile, zlib.error):
         raise _not_ours(path) from None
     if not isinstance(content, dict) or not content.keys() >= PARTS:
         raise _not_ours(path)
     if content["format"] != FORMAT:
         raise _not_ours(path)
     return content
+
+
+def _arrays_out(value: Any, arrays: dict[str, Any]) -> Any:
+    """`value` as JSON values; its arrays are put aside and replaced by their keys."""
+    if isinstance(value, np.ndarray):
+        key = f"{ARRAY}{len(arrays)}"
+        arrays[key] = value
+        return key
+    if isinstance(value, Mapping):
+        return {name: _arrays_out(part, arrays) for name, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_arrays_out(part, arrays) for part in value]
+    return value
+
+
+def _arrays_in(value: Any, arrays: Mapping[str, np.ndarray]) -> Any:
+    """The reverse of `_arrays_out`."""
+    if isinstance(value, str) and value.startswith(ARRAY):
+        return arrays[value]
+    if isinstance(value, dict):
+        return {name: _arrays_in(part, arrays) for name, part in value.items()}
+    if isinstance(value, list):
+        return [_arrays_in(part, arrays) for part in value]
+    return value
 
 
 def _not_ours(path: Path) -> InputError:
@@ -70,18 +99,14 @@ def pack(
     shrink: float,
     card: Mapping[str, object],
 ) -> dict[str, Any]:
-    """A selector as tensors and JSON values; all kernel networks share their centres."""
-    import torch
+    """A selector as arrays and JSON values; all kernel networks share their centres."""
 
     def names(vectors: NameVectors) -> dict[str, Any]:
         stacked = np.stack(list(vectors.known.values())).astype(np.float16)
-        return {"names": list(vectors.known), "vectors": torch.from_numpy(stacked)}
+        return {"names": list(vectors.known), "vectors": stacked}
 
     def directions(part: Directions) -> dict[str, Any]:
-        return {
-            "mean": torch.from_numpy(part.mean),
-            "basis": torch.from_numpy(part.basis.astype(np.float32)),
-        }
+        return {"mean": part.mean, "basis": part.basis.astype(np.float32)}
 
     perceptrons, centres = mixture.perceptrons, mixture.kernels[0].centres
     return {
@@ -90,36 +115,36 @@ def pack(
         "describer": {
             "objects": names(describer.object_names),
             "actions": names(describer.action_names),
-            "size_mean": torch.from_numpy(describer.size_mean),
-            "size_scale": torch.from_numpy(describer.size_scale),
+            "size_mean": describer.size_mean,
+            "size_scale": describer.size_scale,
         },
         "kernels": [
             {
                 "config": asdict(network.config),
-                "coefficients": torch.from_numpy(network.coefficients.astype(np.float32)),
-                "bias": torch.from_numpy(network.bias),
+                "coefficients": network.coefficients.astype(np.float32),
+                "bias": network.bias,
             }
             for network in mixture.kernels
         ],
         "centres": {
-            "sizes": torch.from_numpy(centres.sizes),
-            "classes": torch.from_numpy(centres.classes.astype(np.uint8)),
+            "sizes": centres.sizes,
+            "classes": centres.classes.astype(np.uint8),
             "objects": centres.objects.tolist(),
             "actions": centres.actions.tolist(),
         },
         "perceptrons": {
             "object_directions": directions(perceptrons.layout.object_directions),
             "action_directions": directions(perceptrons.layout.action_directions),
-            "mean": torch.from_numpy(perceptrons.mean),
-            "scale": torch.from_numpy(perceptrons.scale),
-            "weights": [torch.from_numpy(w) for w in perceptrons.weights],
-            "biases": [torch.from_numpy(b) for b in perceptrons.biases],
+            "mean": perceptrons.mean,
+            "scale": perceptrons.scale,
+            "weights": list(perceptrons.weights),
+            "biases": list(perceptrons.biases),
         },
         "share": mixture.share,
         "temperature": mixture.temperature,
         "shrink": shrink,
         "pairs": [list(pair) for pair in pair_counts],
-        "counts": torch.from_numpy(np.stack(list(pair_counts.values()))).short(),
+        "counts": np.stack(list(pair_counts.values())).astype(np.int16),
     }
 
 
@@ -133,35 +158,35 @@ def unpack(
         KernelNetwork(
             config=KernelConfig(**network["config"]),
             centres=centres,
-            coefficients=network["coefficients"].double().numpy(),
-            bias=network["bias"].numpy(),
+            coefficients=network["coefficients"].astype(float),
+            bias=network["bias"],
         )
         for network in content["kernels"]
     )
     mixture = Mixture(
         kernels, _perceptrons(content["perceptrons"]), content["share"], content["temperature"]
     )
-    counts = content["counts"].double().numpy()
+    counts = content["counts"].astype(float)
     pairs = {(obj, action): n for (obj, action), n in zip(content["pairs"], counts, strict=True)}
     return describer, mixture, pairs, float(content["shrink"])
 
 
 def _describer(packed: Mapping[str, Any]) -> Describer:
     def names(part: Mapping[str, Any]) -> NameVectors:
-        return NameVectors(dict(zip(part["names"], part["vectors"].double().numpy(), strict=True)))
+        return NameVectors(dict(zip(part["names"], part["vectors"].astype(float), strict=True)))
 
     return Describer(
         object_names=names(packed["objects"]),
         action_names=names(packed["actions"]),
-        size_mean=packed["size_mean"].numpy(),
-        size_scale=packed["size_scale"].numpy(),
+        size_mean=packed["size_mean"],
+        size_scale=packed["size_scale"],
     )
 
 
 def _centres(packed: Mapping[str, Any], describer: Describer) -> Described:
     return Described(
-        sizes=packed["sizes"].numpy(),
-        classes=packed["classes"].double().numpy(),
+        sizes=packed["sizes"],
+        classes=packed["classes"].astype(float),
         object_vectors=describer.object_names(packed["objects"]),
         action_vectors=describer.action_names(packed["actions"]),
         objects=np.array(packed["objects"]),
@@ -171,14 +196,14 @@ def _centres(packed: Mapping[str, Any], describer: Describer) -> Described:
 
 def _perceptrons(packed: Mapping[str, Any]) -> Ensemble:
     def directions(part: Mapping[str, Any]) -> Directions:
-        return Directions(part["mean"].numpy(), part["basis"].double().numpy())
+        return Directions(part["mean"], part["basis"].astype(float))
 
     return Ensemble(
         layout=InputLayout(
             directions(packed["object_directions"]), directions(packed["action_directions"])
         ),
-        mean=packed["mean"].numpy(),
-        scale=packed["scale"].numpy(),
-        weights=tuple(w.numpy() for w in packed["weights"]),
-        biases=tuple(b.numpy() for b in packed["biases"]),
+        mean=packed["mean"],
+        scale=packed["scale"],
+        weights=tuple(packed["weights"]),
+        biases=tuple(packed["biases"]),
     )

@@ -23,7 +23,7 @@ from maniskill_taskgrasp.selection.strategy import GraspStrategy
 
 PairCounts = Mapping[tuple[str, str], np.ndarray]
 """(object, action) -> rows of each topology (15,)."""
-SHIPPED = "checkpoints/selector.pt"
+SHIPPED = "checkpoints/selector.npz"
 
 
 class Selector:
