@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 NO_ACTION = "no action of the table"
 """The head's class for everything that is none of the 74 actions."""
 PHRASE_BONUS = 6.0  # Log-odds that the most specific matching phrase adds to its action.
+PARTICULAR_BONUS = 8.0  # The same for a phrase of more than a verb: "put down".
 RANK_DISCOUNT = 1.5  # Taken off that bonus for the last phrase of an action's list.
 TOOL_BONUS = 4.0  # Times the share of an action in what people did with the instrument.
 GENERIC_ACTIONS = word_set("generic_actions")
@@ -108,8 +109,9 @@ def phrase_bonus(found: dict[str, tuple[int, float]]) -> dict[str, float]:
     "take off" beats "take", and "make a call" beats "make".
     """
     best = max((specificity for specificity, _ in found.values()), default=0)
+    bonus = PARTICULAR_BONUS if best > 1 else PHRASE_BONUS
     return {
-        action: PHRASE_BONUS + RANK_DISCOUNT * rank if specificity == best else VAGUE_BONUS
+        action: bonus + RANK_DISCOUNT * rank if specificity == best else VAGUE_BONUS
         for action, (specificity, rank) in found.items()
     }
 

@@ -11,6 +11,7 @@ from maniskill_taskgrasp.language.lexicon import (
     load_lexicon,
     matches,
 )
+from maniskill_taskgrasp.language.mentions import BEFORE_NOUN
 from maniskill_taskgrasp.language.model import import_spacy
 from maniskill_taskgrasp.language.moods import (
     CARRIERS,
@@ -109,6 +110,9 @@ def _verb_tokens(doc: Doc) -> list[tuple[Token, str]]:
 
 def _is_nominal(token: Token) -> bool:
     """Whether a word parsed as a verb is the noun of an article: "a quarter turn"."""
+    named = any(m.start <= token.i < m.end for m in token.doc._.mentions)
+    if named and token.i and token.nbor(-1).lower_ in BEFORE_NOUN:
+        return True
     before = [t.lower_ for t in token.doc[max(0, token.i - 2) : token.i]]
     return token.dep_ == "dobj" and token.tag_ == "VB" and bool({"a", "an"} & set(before))
 
@@ -301,6 +305,10 @@ def _build(doc: Doc, token: Token, base: str, high: int) -> Clause | None:
         return replace(clause, mood="request", purpose=False)
     if token.lemma_ in CARRIERS and not is_framed(token) and _has_complement(token):
         return None
+    if token.lemma_ in {"get", "have"} and any(
+        c.dep_ in {"ccomp", "xcomp"} and c.tag_ == "VBN" for c in token.children
+    ):
+        return None  # "Get this spill cleaned up" asks for the cleaning.
     if base in LIGHT_VERBS:
         noun = _light_noun(doc, token.i, high)
         if noun is not None:

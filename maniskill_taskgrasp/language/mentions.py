@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 POSSESSIVE = word_set("possessive")
 OWN_HAND = (("left hand", SYNONYM_SCORE),)
 """What "hand" alone names; "your hands" are no object to grasp."""
+BEFORE_NOUN = word_set("possessive") | frozenset(["the", "a", "an", "that", "this"])
 LONGEST_NAME = 5  # Words of the longest name.
 
 
@@ -92,6 +93,8 @@ def _join_contents(doc: Doc, mentions: list[Mention]) -> list[Mention]:
 
 def is_used_as_verb(token: Token) -> bool:
     """Whether a word that may be an object ("hammer", "iron") is the verb here."""
+    if token.i and token.nbor(-1).lower_ in BEFORE_NOUN:
+        return False  # "Slide that wrench over", parsed as a verb.
     return token.pos_ in {"VERB", "AUX"} and token.dep_ not in {"compound", "pobj", "dobj"}
 
 

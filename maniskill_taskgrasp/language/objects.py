@@ -38,6 +38,8 @@ FIXTURES = word_set("fixtures")
 """Things that are cleaned where they are, with a cloth in the hand."""
 TOOLS_OF_VERBS = word_map("tools_of_verbs")
 """Verbs that say what is held without being its name: "sweep" takes a brush."""
+TOOLS_OF_ACTIONS = word_map("tools_of_actions")
+"""Where the data's most frequent object is no tool (drilling: a machine's handle)."""
 CONTENTS = word_set("contents")
 """What is spilled or poured: words that stand for their container only where it is handled."""
 HAND_TOOLS = ("wrench", "hex wrench", "screwdriver", "allen wrench", "pliers", "chuck key")
@@ -113,9 +115,14 @@ def nearest(text: str, *, synonyms: bool = True) -> tuple[tuple[str, float], ...
     return tuple(sorted(best.items(), key=lambda item: -item[1])[:CANDIDATES])
 
 
-def from_mention(mention: Mention) -> Held:
-    """The object that words name, with those that they may name besides."""
-    (name, score), *others = mention.objects
+def from_mention(mention: Mention, action: str | None = None) -> Held:
+    """The object that words name, with those that they may name besides.
+
+    Of several, the one is taken that people used for the action.
+    """
+    known = load_knowledge().pair_counts
+    ranked = sorted(mention.objects, key=lambda item: (item[0], action) not in known)
+    (name, score), *others = ranked
     last = mention.words.split()[-1]
     family = [(o, 0.5) for o in load_knowledge().objects if last in o.split() and o != name]
     note = f"took {mention.words!r} as {name!r}" if score < 1 else None
@@ -143,14 +150,20 @@ def from_data(action: str, besides: tuple[tuple[str, float], ...] = ()) -> Held:
     """The object that people used most for an action, said openly."""
     ranked = used_for(action)
     name, share = ranked[0]
+    usual = TOOLS_OF_ACTIONS.get(action)
+    if usual is not None:
+        note = f"no object was named for {action}: took {usual!r}, the usual tool"
+        return Held(usual, share, (*ranked[:CANDIDATES], *besides), note, guessed=True)
     note = f"no object was named for {action}: took {name!r}, which people used most often for it"
     return Held(name, share, (*ranked[1:CANDIDATES], *besides), note, guessed=True)
 
 
-def tool_in_verb(clause: Clause) -> Held | None:
+def tool_in_verb(clause: Clause, action: str) -> Held | None:
     """The tool that the verb itself names: "sponge off the table", "sweep the porch"."""
     verb = clause.verb
-    name = TOOLS_OF_VERBS.get(verb) or next(iter(load_lexicon().names.get(verb, ())), (None,))[0]
+    known = load_knowledge().pair_counts
+    called = [o for o, _ in load_lexicon().names.get(verb, ()) if (o, action) in known]
+    name = TOOLS_OF_VERBS.get(verb) or next(iter(called), None)
     if name is None:
         return None
     note = f"no object was named: took {name!r}, which {verb!r} is done with"
@@ -203,7 +216,7 @@ def is_worked_on(name: str, action: str) -> bool:
     if action not in TOOL_ACTIONS:
         return False
     if name in FIXTURES:
-        return True
+        return not (action == "washing" and load_knowledge().objects[name].is_floppy)
     if action in POURED_ACTIONS and any(w in HOLDER_WORDS for w in name.split()):
         return False
     return action in WORK_ACTIONS and (name, action) not in load_knowledge().pair_counts
@@ -221,7 +234,7 @@ def _from_role(role: Role, task: Task) -> Held | None:
 
 def _from_acted_on(mention: Mention, task: Task, action: str) -> Held:
     """The named target, or the data's tool where the target is only worked on."""
-    held = from_mention(mention)
+    held = from_mention(mention, action)
     spilled = mention.words in CONTENTS and action in TOOL_ACTIONS - POURED_ACTIONS
     if held.name is not None and (spilled or is_worked_on(held.name, action)):
         return _spoken_of(task, action) or from_data(action, ((held.name, held.score),))
@@ -321,7 +334,7 @@ def choose_object(task: Task, action: str | None) -> Held:
     target = clause.role("target")
     if action in TOOL_ACTIONS:
         spoken = _spoken_of(task, action) or named_after(clause)
-        return spoken or tool_in_verb(clause) or from_data(action)
+        return spoken or tool_in_verb(clause, action) or from_data(action)
     if target is not None and not target.pronoun:
         held = named_after(clause) or from_words(target.text)
         found = held.name is not None

@@ -101,6 +101,8 @@ def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
         if segments[k].asking:
             continue
         for clause in docs[k]._.clauses:
+            if segments[k].negated and " mind " in segments[k].framed[:12]:
+                continue  # "Never mind folding it".
             own = [m for m in docs[k]._.mentions if m.end <= clause.at]
             later = [m for doc in docs[k + 1 :] for m in doc._.mentions]
             told.append(Told(clause, (*seen[k], *own), tuple(later), segments[k].text))
@@ -198,6 +200,8 @@ def make_tasks(told: list[Told]) -> list[Task]:
     for at, item in enumerate(asked):
         following = asked[at + 1] if at + 1 < len(asked) else None
         clause = item.clause
+        if clause.verb == "look" and following and any(r.pronoun for r in following.clause.roles):
+            continue  # "Look at the rug, vacuum it" only points at it.
         if clause.transfer or _only_prepares(clause):
             leads = following is not None and _belongs(following, item)
             names_tool = not leads and bool(tasks) and _names_tool(item, tasks[-1])

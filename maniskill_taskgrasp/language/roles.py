@@ -19,6 +19,8 @@ SOURCE_WORDS = word_set("source_words")
 PLACE_WORDS = word_set("place_words")
 PRONOUNS = word_set("pronouns")
 SOMETHING = word_set("something")
+RULING_OUT = frozenset(["anything", "everything", "something", "all"])
+"""Words before "but the towel"."""
 TOKENS_IN_PHRASE = word_set("tokens_in_phrase")
 
 
@@ -72,6 +74,8 @@ def is_denied(doc: Doc, start: int) -> bool:
     at = start - 1
     while at >= 0 and (doc[at].pos_ in {"DET", "ADJ", "PRON"} or doc[at].lower_ == "with"):
         at -= 1
+    if at > 0 and doc[at].lower_ in {"but", "except"} and doc[at - 1].lower_ in RULING_OUT:
+        return True
     return 0 < at < start - 1 and doc[at].lower_ == "not" and doc[at - 1].pos_ != "AUX"
 
 

@@ -23,7 +23,8 @@ LEADING_TOOL = re.compile(r"(?:with|using|via|by|in|on|at|from)\s[^,]+?,\s*(?=\w
 ASKING = re.compile(
     r"(?:what|who|whose|when|where|why|how|which)\s(?:is|are|was|were|do|does|did|has|have|haven't|"
     r"will|would|can|many|much|old|long|far|tall|thick|wide|often)\b"
-    r"|do you (?:have|know|like|love|believe|own)\b|(?:having|being)\s"
+    r"|do you (?:have|know|like|love|believe|own|prefer|enjoy|remember|feel|hate|speak|live|work)\b"
+    r"|(?:having|being)\s"
 )
 """Questions for an answer in words, and participles: they ask for nothing to be done."""
 BEHIND_UNKNOWN = word_set("behind_unknown")

@@ -13,6 +13,7 @@ from maniskill_taskgrasp.language.words import word_list, word_map, word_set
 
 MAX_CHARACTERS = 400  # Longest instruction that is read; a spoken minute is about 800.
 MAX_SEGMENTS = 8  # Later sentences are not read; a note says so.
+MOST_SENTENCES_OF_A_WORD = 3
 MAX_WORD = 40  # Longer runs of letters are no word.
 OPENER = "you should "
 
@@ -35,6 +36,15 @@ SELF_CORRECTION = re.compile(
 """What a speaker takes back: "the stapler, no, the tape"."""
 
 
+PAUSE_CORRECTION = re.compile(
+    r"\b(?:the|a|an|my|your|that|this)\s(?:[\w-]+\s){0,2}?[\w-]+?(?P<particle>\s(?:off|on|up|down|out|in))?"
+    r"\s*(?:\.{2,}|[-–—]{2,}|\s[-–—]\s)\s*"
+    r"(?:(?:well|no|wait|er+|u+m+|u+h+|h+m+|sorry|actually|or rather|i mean)[,\s]+)*"
+    r"(?=(?:the|a|an|my|your)\s)"
+)
+"""The same after a pause: "the yarn... the string"."""
+
+
 def clean(text: str) -> str:
     """One line of lower-case words and plain punctuation.
 
@@ -45,6 +55,9 @@ def clean(text: str) -> str:
     kept = (c if unicodedata.category(c)[0] not in "CS" or c in "&$+<>=^`|~" else " " for c in text)
     text = "".join(kept).translate(QUOTES).lower()
     text = re.sub(r"</?\w{1,8}>", " ", text)
+    text = PAUSE_CORRECTION.sub(
+        lambda m: f"{m['particle'].strip()} " if m["particle"] else "", text
+    )
     text = re.sub(r"(?<=[a-z])/(?=[a-z])", " or ", text)
     text = re.sub(r"[\"()\[\]{}*_#<>|\\^~=+]", " ", text)
     text = re.sub(r"\.{2,}|\s[-–—]+\s|--+|[–—]", " , ", text)
@@ -64,6 +77,8 @@ def clean(text: str) -> str:
 def split_sentences(text: str) -> list[str]:
     """Sentences and parts between semicolons; a decimal point does not split."""
     parts = re.split(r"[.!?;]+(?=\s|$)|:(?=\s)", text)
+    if len(parts) > MOST_SENTENCES_OF_A_WORD and all(len(part.split()) < 2 for part in parts):
+        parts = [" ".join(part.strip() for part in parts)]  # "Open. The. Drawer."
     return [part.strip(" ,.:-'") for part in parts if re.search(r"\w", part)]
 
 

@@ -249,12 +249,13 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
             reason = f"no action of the data fits {echo(task.told.clause.text)}: {TRY}"
             return Rejected(text, reason, "off_topic")
     action = scores.ranked[0][0] if scores is not None else None
+    names_object = task.told is not None and any(r.certainty > 0.5 for r in task.told.clause.roles)
     held = Held(None, 1.0) if object_override else choose_object(task, action)
     if object_override is None:
         if held.name is None:
             return no_object(task, text, held)
         unsure = scores is not None and (
-            not scores.known_verb or scores.no_action > NO_ACTION_MAXIMUM
+            not scores.known_verb or (scores.no_action > NO_ACTION_MAXIMUM and not names_object)
         )
         if held.guessed and unsure:  # One guess may stand, two may not.
             reason = f"no action of the data fits {echo(task.source.clause.text)}: {TRY}"
