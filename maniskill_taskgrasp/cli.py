@@ -18,7 +18,8 @@ from tyro.conf import OmitSubcommandPrefixes, Positional, subcommand
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.train.evaluation_config import EvaluateConfig
 
-BAR_WIDTH = 24  # Characters of a probability bar.
+BAR_WIDTH = 24  # Characters of a probability bar,
+KEY_WIDTH = 21  # and of the name of a fact before it.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -396,4 +397,15 @@ def _print_facts(facts: Any, as_json: bool) -> None:
         print(json.dumps(facts))
         return
     for entry in facts if isinstance(facts, list) else [facts]:
-        print("\n".join(f"{key:14s} {value}" for key, value in entry.items()))
+        print("\n".join(f"{key:{KEY_WIDTH}s}{_plain(value)}" for key, value in entry.items()))
+
+
+def _plain(value: Any) -> str:
+    """A value as a person reads it: numbers in a row, other lists one entry a line."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_plain(entry)}" for key, entry in value.items())
+    if isinstance(value, list):
+        numbers = all(isinstance(entry, (int, float)) for entry in value)
+        between = ", " if numbers else "\n" + " " * KEY_WIDTH
+        return between.join(_plain(entry) for entry in value) or "none"
+    return "none" if value is None else str(value)

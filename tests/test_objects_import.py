@@ -371,6 +371,15 @@ def test_catalogue_name_is_not_taken(own_library, tmp_path):
     assert load("mug").split != "imported"
 
 
+def test_object_that_is_replaced_is_said(own_library, tmp_path):
+    """A second import of a name takes the place of the first, not in silence."""
+    path = write("brick.stl", box_stl())(tmp_path)
+    (first,), (second,) = import_objects(path), import_objects(path)
+    assert not any("replaces" in note for note in first["notes"])
+    assert "replaces the object 'brick' imported before" in second["notes"]
+    assert names("imported") == ("brick",)
+
+
 def test_path_is_as_good_as_a_name(own_library, tmp_path):
     """`load` of a path imports on the fly, once, without a place in the library."""
     path = write("brick.stl", box_stl())(tmp_path)

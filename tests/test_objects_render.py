@@ -10,6 +10,7 @@ import pytest
 from maniskill_taskgrasp.assets.objects.commands import show_object
 from maniskill_taskgrasp.assets.objects.library import load, names
 from maniskill_taskgrasp.assets.objects.render import CARD, LABEL, TILE, contact_sheet, pose_shown
+from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.tasks.rendering import rendering_available
 
 draws = pytest.mark.skipif(not rendering_available(), reason="pictures need a Vulkan device")
@@ -20,6 +21,21 @@ def pixels(path):
     from PIL import Image
 
     return np.asarray(Image.open(path).convert("RGB"), dtype=int)
+
+
+@pytest.mark.parametrize("name", ["card", "card.xyz", "card.stl"])
+def test_name_of_no_picture_is_one_clear_line(name, tmp_path):
+    """Refused before anything is drawn."""
+    with pytest.raises(InputError, match=r"names no picture: \.png"):
+        show_object("coin", tmp_path / name)
+
+
+@draws
+def test_picture_that_cannot_be_written_is_one_clear_line(tmp_path):
+    """Below a file, where no folder can be."""
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(InputError, match="cannot write"):
+        show_object("coin", tmp_path / "file" / "coin.png")
 
 
 @pytest.mark.slow

@@ -153,5 +153,7 @@ def _import(name: str, job: Importer) -> Json:
     if name in names():
         name = f"{name} imported"
     model = replace(model, name=name, affordance=replace(model.affordance, name=name))
+    if name in names("imported"):
+        notes = (*notes, f"replaces the object {echo(name)} imported before")
     save_user_object(model, notes)
     return {**summary(model), "notes": list(notes), "licence": model.licence}

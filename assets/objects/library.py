@@ -49,7 +49,7 @@ def names(split: str | None = None) -> tuple[str, ...]:
     """
     known = ("all", *SPLITS, "imported")
     if split not in (None, *known):
-        raise unknown_name("split", split, known, "train, test, all and imported")
+        raise unknown_name("split", split, known, "taskgrasp objects list --help")
     if split == "imported":
         return user_names()
     return tuple(n for n in sorted(_catalogue()) if split in (None, "all") or _split()[n] == split)

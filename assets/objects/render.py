@@ -19,7 +19,7 @@ from maniskill_taskgrasp.assets.objects.library import load, names
 from maniskill_taskgrasp.assets.objects.model import ObjectModel, RestingPose
 from maniskill_taskgrasp.assets.objects.presentation import Presentation, present
 from maniskill_taskgrasp.assets.objects.recipe import load_recipes
-from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.errors import InputError, echo
 
 if TYPE_CHECKING:
     import sapien
@@ -34,6 +34,7 @@ FIELD = 0.35  # [rad] vertical field of view: long, so that shapes are hardly di
 ROUND = {"non-round": "not round", "abc": "a ball"} | {x: f"round about {x}" for x in "ac"}
 SHADES = 0xFC  # Bits kept of each colour in the contact sheet: 64 shades, half the file.
 LABEL = 16  # [pixel]
+PICTURES = (".png", ".jpg", ".jpeg")
 
 
 class Studio:
@@ -150,10 +151,16 @@ def _facing(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def object_card(model: ObjectModel, path: Path) -> None:
-    """Picture file of one object: mesh, convex parts, how it is offered, its poses, its numbers."""
+    """Picture file of one object: mesh, convex parts, how it is offered, its poses, its numbers.
+
+    Raises:
+        InputError: no picture can be written to that path, or none made here.
+    """
     from PIL import Image as Pillow
     from PIL import ImageDraw
 
+    if path.suffix.lower() not in PICTURES:
+        raise InputError(f"{echo(path.name)} names no picture: {', '.join(PICTURES)} would do")
     studio = Studio(CARD)
     offered = present(model)
     pictures = [
@@ -177,8 +184,11 @@ def object_card(model: ObjectModel, path: Path) -> None:
         draw.text((corner[0] + CARD // 2, corner[1] + CARD), label, "black", anchor="ma")
     for index, line in enumerate(numbers):
         draw.text((8, text_top + LABEL * index), line, "black")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    card.save(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        card.save(path)
+    except OSError as error:
+        raise InputError(f"cannot write {echo(path)}: {error.strerror}") from None
 
 
 def _numbers(model: ObjectModel) -> list[str]:
