@@ -93,6 +93,26 @@ def test_recorded_episodes_replay(tmp_path):
         name.unlink()
 
 
+def test_one_environment_draws_its_object_anew():
+    """Each reset, by its seed, as ManiSkill's tasks with many objects do; a lone object stays."""
+    several = gym.make("TaskGrasp-v0", objects=["hammer", "mug", "marker"], render_backend="none")
+
+    def drawn(seed):
+        several.reset(seed=seed)
+        return several.unwrapped.placements[0].model.name
+
+    names = [drawn(seed) for seed in range(6)]
+    assert len(set(names)) > 1
+    assert [drawn(seed) for seed in range(3)] == names[:3]
+    several.close()
+    lone = gym.make("TaskGrasp-v0", objects=["hammer"], render_backend="none")
+    lone.reset(seed=0)
+    scene = lone.unwrapped.scene
+    lone.reset(seed=1)
+    assert lone.unwrapped.scene is scene
+    lone.close()
+
+
 def _same(one, other):
     """Equal data sets throughout."""
     for key, value in one.items():
