@@ -29,6 +29,7 @@ RESULT_SPECIFICITY = 3  # "Push it shut" says closing more surely than pushing.
 RESULTS = word_map("results")
 RESULTLESS = word_set("resultless")
 """Verbs that keep a state instead of bringing it about: "hold the door open"."""
+LITERAL_DISCOUNT = 1.0  # What "clean" loses as cleaning where "clean|dishes" says washing.
 VAGUE_BONUS = 2.0  # Log-odds of a phrase less specific than the best.
 READINGS = {"clause": 0.65, "said": 0.15, "verb": 0.12, "objects": 0.08}
 """Weights of what is mixed: the clause with its phrases, the whole request by meaning alone, any
@@ -110,10 +111,13 @@ def phrase_bonus(found: dict[str, tuple[int, float]]) -> dict[str, float]:
     """
     best = max((specificity for specificity, _ in found.values()), default=0)
     bonus = PARTICULAR_BONUS if best > 1 else PHRASE_BONUS
-    return {
-        action: bonus + RANK_DISCOUNT * rank if specificity == best else VAGUE_BONUS
-        for action, (specificity, rank) in found.items()
-    }
+    odds = {}
+    for action, (specificity, rank) in found.items():
+        literal = rank == 0.0  # The first phrase of an action's list is its own name.
+        full = bonus + RANK_DISCOUNT * rank
+        vague = full - LITERAL_DISCOUNT if literal else VAGUE_BONUS
+        odds[action] = full if specificity == best else vague
+    return odds
 
 
 def _tool_bonus(clause: Clause, action: str) -> float:

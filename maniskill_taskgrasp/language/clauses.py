@@ -205,6 +205,8 @@ def _is_transfer(doc: Doc, token: Token, base: str, clause: Clause) -> bool:
     named = {w for m in doc._.mentions for w in m.words.split()}
     for phrase in load_lexicon().phrases.get(base, ()):
         meant = phrase.specificity > 1 and matches(phrase, clause.words, frozenset(clause.words))
+        if meant and phrase.words and doc[min(verb + 1, len(doc) - 1)].lower_ == "them":
+            return False  # "Throw them away": what is thrown, not who gets it.
         if meant and not (receiver and (not phrase.nouns or phrase.nouns & named)):
             return False
     directed = receiver or bool({"me", "us", "here", "over"} & set(clause.words))

@@ -304,7 +304,7 @@ def _elsewhere(clause: Clause, action: str) -> Held | None:
 def _spoken_of(task: Task, action: str) -> Held | None:
     """An object named before that people use for the action: "the pen, I must sign"."""
     usual = {name for name, _ in used_for(action)}
-    for mention in reversed(task.source.earlier):
+    for mention in (*reversed(task.source.earlier), *task.source.later):
         if mention.objects[0][0] in usual:
             return from_mention(mention)
     return None

@@ -176,7 +176,18 @@ def frame(part: str) -> Segment:
     return Segment(part, framed, negated, order, inner, speaking or bool(ASKING.match(body)))
 
 
+SOILED = re.compile(
+    r"there (?:is|are) (?:\w+ ){1,3}?(?:all over|all across|everywhere on|on) (?P<thing>[\w' -]+)"
+)
+"""What lies where it should not: "there is dust on the shelf"."""
+SOILS = word_set("soils")
+
+
 def request_of_state(sentence: str) -> str | None:
     """What a complaint asks for: "the hinge squeaks" -> "oil the hinge"."""
-    told = IN_STATE.fullmatch(sentence.replace("'s ", " is "))
+    sentence = sentence.replace("'s ", " is ")
+    soiled = SOILED.fullmatch(sentence)
+    if soiled and SOILS & set(sentence.split()):
+        return f"clean {soiled['thing']}"
+    told = IN_STATE.fullmatch(sentence)
     return f"{STATES[told['state']]} {told['thing'].strip()}" if told else None

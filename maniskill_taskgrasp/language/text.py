@@ -36,6 +36,10 @@ SELF_CORRECTION = re.compile(
 """What a speaker takes back: "the stapler, no, the tape"."""
 
 
+USABLE = re.compile(
+    r"\bdo you have(?= (?:\w+ ){2,4}(?:i|we) (?:could|can|may|might) (?:use|have|borrow))"
+)
+"""Asks for a thing where the rest of "do you have" only asks."""
 PAUSE_CORRECTION = re.compile(
     r"\b(?:the|a|an|my|your|that|this)\s(?:[\w-]+\s){0,2}?[\w-]+?(?P<particle>\s(?:off|on|up|down|out|in))?"
     r"\s*(?:\.{2,}|[-–—]{2,}|\s[-–—]\s)\s*"
@@ -55,6 +59,8 @@ def clean(text: str) -> str:
     kept = (c if unicodedata.category(c)[0] not in "CS" or c in "&$+<>=^`|~" else " " for c in text)
     text = "".join(kept).translate(QUOTES).lower()
     text = re.sub(r"</?\w{1,8}>", " ", text)
+    text = re.sub(r"([a-z])\1{2,}", r"\1\1", text)
+    text = USABLE.sub("give me", text)
     text = PAUSE_CORRECTION.sub(
         lambda m: f"{m['particle'].strip()} " if m["particle"] else "", text
     )

@@ -119,17 +119,15 @@ def understand_clean(
         told = tell(segments, read_inner(segments, docs))
         answers = [answer(task, text, object_override) for task in make_tasks(told)]
     refused = answers
+    if not any(isinstance(a, Instruction) for a in answers):
+        answers = [*read_whole(text, segments, docs, object_override)]
+    if not answers:
+        meant = next(filter(None, map(request_of_state, split_sentences(cleaned))), None)
+        if meant is None:
+            return explain_refusal(text, refused, docs)
+        notes = (*notes, f"took the complaint as {meant!r}")
+        return understand_clean(text, meant, notes, object_override)
     understood = [a for a in answers if isinstance(a, Instruction)]
-    if not understood:
-        understood = answers = [*read_whole(text, segments, docs, object_override)]
-    complaints = (
-        [] if understood else [*filter(None, map(request_of_state, split_sentences(cleaned)))]
-    )
-    if complaints:
-        meant = f"took the complaint as {complaints[0]!r}"
-        return understand_clean(text, complaints[0], (*notes, meant), object_override)
-    if not understood:
-        return explain_refusal(text, refused, docs)
     first = answers.index(understood[0])
     later = tuple(
         a for a in answers[first + 1 :] if isinstance(a, Instruction) or a.kind == "no_object"
