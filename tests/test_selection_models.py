@@ -218,7 +218,7 @@ def test_leak_guard_fires():
     assert targets.leaks({"o": 0.86, "p": 0.67, "own@1": 0.58}) == ["o", "own@1"]
 
 
-@pytest.mark.parametrize("model", ["ours", "pair", "trees"])
+@pytest.mark.parametrize("model", ["ours", "pair", "trees", "four", "paper"])
 def test_committed_report_does_not_leak(model):
     """The published random-split figures stay below what only a leak can reach."""
     row = json.loads(RESULTS.read_text("utf-8"))["honest"][model]["random"]["row"]

@@ -59,7 +59,8 @@ def train_leaking(
 
     Returns:
         The curve, one dict per epoch (hit@1, match@3, own@1, o, p in [0, 1], `train_o` and
-        `train_p` on as many training rows), and the last epoch's {"thresholds", "confusion"}.
+        `train_p` on as many training rows), and the last epoch's {"test", "thresholds",
+        "confusion"} on all test rows.
     """
     data = _copies(table, config)
     rng = np.random.default_rng(config.seed)
@@ -79,6 +80,7 @@ def train_leaking(
     scores, opposition, pip = predict(trainer.network, data.inputs[test])
     targets = data.targets.take(test)
     return curve, {
+        "test": _score(trainer.network, data, test),
         "thresholds": threshold_curve(scores, targets.labels),
         "confusion": {
             "opposition": confusion(opposition.argmax(1), targets.opposition, 3),

@@ -135,7 +135,6 @@ def _paired_lines(honest: Results, split: str) -> list[str]:
 def _paper_section(results: Results) -> list[str]:
     """The paper's own figures, its protocol followed here, and the same network without leaks."""
     paper = results["paper"]
-    last = paper["curve"][-1]
     honest = results.get("honest", {}).get("paper", {}).get("random")
     ours = results.get("honest", {}).get("ours", {}).get("random")
     config = paper["config"]
@@ -144,7 +143,7 @@ def _paper_section(results: Results) -> list[str]:
         "",
         f"Split after augmentation to {config['rows']:,} rows (noise {config['sigma']} deviations, "
         f"batch {config['batch']}), Duration as an input, label sets of the whole table. "
-        f"Fold {config['fold'] + 1} of {config['folds']}, {last['epoch']} epochs, "
+        f"Fold {config['fold'] + 1} of {config['folds']}, {config['epochs']} epochs, "
         f"seed {config['seed']}.",
         "",
         _row(
@@ -159,7 +158,7 @@ def _paper_section(results: Results) -> list[str]:
     ]
     columns = (
         PAPER,
-        last,
+        paper["test"],
         {name: both[0] for name, both in honest["row"].items()} if honest else {},
         {name: both[0] for name, both in ours["row"].items()} if ours else {},
         MEMORISED,
