@@ -34,7 +34,14 @@ def test_action_and_object(text, action, name):
 
 
 @pytest.mark.parametrize(
-    "text", ["hand me the screwdriver", "Could I have the screwdriver?", "screwdriver please"]
+    "text",
+    [
+        "hand me the screwdriver",
+        "Could I have the screwdriver?",
+        "screwdriver please",
+        "Screwdriver. Now!",
+        "Do you have a screwdriver I could use?",
+    ],
 )
 def test_transfer_without_purpose_has_no_action(text):
     """A transfer names no use: the answer says so and leaves the action open."""
@@ -141,6 +148,15 @@ def test_prompt_like_text_is_only_text():
         ("The floor hasn't been mopped yet.", "mopping", "mop"),  # A complaint asks for it.
         ("Brush my hair.", "brushing", "hair brush"),  # The tool's name says what it is for.
         ("lft the chair", "lifting", "chair"),  # A verb is meant where a request starts.
+        ("Slide that wrench over to me.", "sliding", "wrench"),  # Behind "that" stands a noun.
+        ("This screw is stuck.", "unscrewing", "screw"),  # A complaint about a state.
+        ("There is mud on the rug.", "cleaning", "rug"),  # A complaint about what lies there.
+        ("Roll up the towel... the blanket.", "folding", "blanket"),  # Corrected after a pause.
+        ("Look at that mug, wash it.", "washing", "mug"),  # "Look" only points.
+        ("Never mind folding the towel. Hang it.", "hanging", "towel"),  # Called off.
+        ("I read the magazines, so throw them away.", "disposing", "magazines"),  # No receiver.
+        ("Lift. The. Bucket. Please.", "lifting", "bucket"),  # Full stops between all words.
+        ("Wipe up the milk.", "wiping", "towel"),  # Contents are no bottle.
     ],
 )
 def test_what_is_meant_between_the_words(text, action, name):
@@ -154,3 +170,16 @@ def test_an_object_that_was_only_held_on_the_open_palm_is_a_tool_like_any():
     answer = parse("Open the box with the lazy susan.")
     assert isinstance(answer, Instruction)
     assert answer.object == "lazy susan"
+
+
+def test_top_three_come_from_several_readings():
+    """The action that the verb names is among them where a noun says something closer."""
+    answer = parse("Clean the floor with the mop.")
+    assert answer.action == "mopping"
+    assert "cleaning" in [name for name, _ in answer.actions_top3]
+
+
+def test_name_alone_and_tales_stay_refused():
+    """What names an object is no request by that alone."""
+    for text in ("a very heavy hammer", "We folded the towels yesterday.", "Do you have a hammer?"):
+        assert isinstance(parse(text), Rejected), text

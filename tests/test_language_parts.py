@@ -1,17 +1,20 @@
 """The parts of the front end: spaCy components, lexicon, spelling, encoder, fallback."""
 
 import importlib
+import random
+import re
 
 import numpy as np
 import pytest
 
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language import Instruction, parse
-from maniskill_taskgrasp.language.actions import NO_ACTION, load_head
+from maniskill_taskgrasp.language.actions import NO_ACTION, READINGS, load_head, mix_readings
 from maniskill_taskgrasp.language.encoder import DIMENSIONS, EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.lexicon import load_lexicon, matches, parse_phrase
 from maniskill_taskgrasp.language.model import COMPONENTS, load_model
 from maniskill_taskgrasp.language.spelling import correct, slip_distance
+from maniskill_taskgrasp.train.instructions import FRAMES, fill_frame, gerund, participle
 
 
 def test_components_declare_what_they_need_and_give():
@@ -115,3 +118,37 @@ def test_paper_recipe_answers_with_names_of_the_data():
     answer = parse("Tighten the bolt with the wrench.", matcher="paper")
     assert answer.action in load_knowledge().actions
     assert answer.object in load_knowledge().objects
+
+
+def test_missing_readings_leave_the_others_their_weights():
+    """The mean of probabilities is again one, over those readings that there are."""
+    clause, said = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    mixed = mix_readings({"clause": clause, "said": said, "verb": None, "objects": None})
+    share = READINGS["clause"] / (READINGS["clause"] + READINGS["said"])
+    np.testing.assert_allclose(mixed, [share, 1 - share])
+
+
+@pytest.mark.parametrize(
+    ("verb", "ing", "done"),
+    [
+        ("tighten", "tightening", "tightened"),
+        ("mop", "mopping", "mopped"),
+        ("wipe", "wiping", "wiped"),
+        ("tie", "tying", "tied"),
+        ("dry", "drying", "dried"),
+        ("hold", "holding", "held"),
+        ("write", "writing", "written"),
+    ],
+)
+def test_training_sentences_have_english_forms(verb, ing, done):
+    """Regular, doubling, silent e, y and irregular verbs."""
+    assert (gerund(verb), participle(verb)) == (ing, done)
+
+
+def test_every_frame_can_be_filled():
+    """No frame asks for a slot that there is not, and none leaves a brace."""
+    phrase = load_lexicon().phrases["tighten"][0]
+    for frame in FRAMES:
+        text = fill_frame(phrase, phrase, random.Random(0), frame)
+        assert "{" not in text
+        assert re.search("tighten|tightened", text)
