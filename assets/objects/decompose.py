@@ -29,7 +29,8 @@ CONCAVITY = 0.001  # [m] that CoACD leaves in a part, as it measures it,
 MAX_CONCAVITY = 0.1  # at most and at least in halves of the longest extent: finer takes long,
 MIN_CONCAVITY, MIN_OPEN_CONCAVITY = 0.025, 0.05  # and CoACD's closing of open meshes is coarse.
 OUTGROW = 0.0005  # [m] by which a part of few corners may outgrow its shape.
-CRUMB = 0.003  # A part of a smaller share of the volume is left out.
+CRUMB = 0.003  # A part of a smaller share of the volume is left out,
+CRUMB_REACH = 0.001  # [m] unless it reaches farther than the others by so much.
 SNAP_SAMPLES = 20_000
 SEED = 0
 
@@ -63,12 +64,24 @@ def convex_parts(mesh: trimesh.Trimesh) -> tuple[Part, ...]:
     if not mesh.is_volume:
         pieces = _snapped(pieces, mesh)
     volumes = [_volume(piece) for piece in pieces]
-    parts = _parts([p for p, v in zip(pieces, volumes, strict=True) if v > CRUMB * sum(volumes)])
+    parts = _parts(_without_crumbs(pieces, volumes))
     # Many parts that miss the limit as well are worth no more than the hull.
     full = len(parts) > 1 and sum(volumes) >= CONVEX_SHARE * hull_volume
     if full and (_follows(mesh, whole) or not _follows(mesh, parts)):
         return whole
     return parts
+
+
+def _without_crumbs(pieces: list[Array], volumes: list[float]) -> list[Array]:
+    """The pieces but for small ones without which the whole is as long, wide and high."""
+    least = CRUMB * sum(volumes)
+    large = np.concatenate([p for p, v in zip(pieces, volumes, strict=True) if v > least])
+    low, high = large.min(axis=0) - CRUMB_REACH, large.max(axis=0) + CRUMB_REACH
+    return [
+        p
+        for p, v in zip(pieces, volumes, strict=True)
+        if v > least or (v > 0 and ((p < low) | (p > high)).any())
+    ]
 
 
 def _parts(pieces: list[Array]) -> tuple[Part, ...]:

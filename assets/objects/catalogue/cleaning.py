@@ -70,10 +70,14 @@ def duster(a: float, b: float, c: float) -> list[Piece]:
 @item("small brush", "cleaning", "plastic")
 def small_brush(a: float, b: float, c: float) -> list[Piece]:
     r = b / 2
+    rows = [
+        band(r, a * 0.012, "#5d4a36").at(a * x) for x in (0.17, 0.21, 0.25, 0.29, 0.33, 0.37, 0.41)
+    ]
     return [
         turned([(-a / 2, r * 0.7), (-a / 2 + 0.004, r), (0, r * 0.8)], "#d23f6f"),
         rod(r * 0.4, a * 0.12, STEEL).at(a * 0.05),
         turned([(a * 0.1, r * 0.75), (a * 0.15, r), (a * 0.42, r), (a / 2, r * 0.5)], "#efe9d6"),
+        *rows,
     ]
 
 

@@ -8,6 +8,7 @@ from maniskill_taskgrasp.assets.objects.forms import (
     DARK_STEEL,
     RED,
     STEEL,
+    WHITE,
     disc,
     ellipse,
     open_box,
@@ -40,8 +41,13 @@ def plate(a: float, b: float, c: float) -> list[Piece]:
 @item("dish", "kitchen", "ceramic")
 def dish(a: float, b: float, c: float) -> list[Piece]:
     r = a / 2
-    body = turned([(-c / 2, r * 0.72), (c / 2, r)], "#d8b46a", hollow=(0.0008, r * 0.86))
-    return [body, disc(r * 0.3, "#a8762f").at(c / 2 - 0.0007)]
+    body = turned([(-c / 2, r * 0.72), (c / 2, r)], WHITE, hollow=(0.0008, r * 0.86))
+    rims = [("#3b6ea5", 0.8), (WHITE, 0.74), ("#8fb3d9", 0.5), (WHITE, 0.46)]
+    discs = [
+        disc(r * share, colour).at(c / 2 - 0.0007 + 1e-4 * i)
+        for i, (colour, share) in enumerate(rims)
+    ]
+    return [body, *discs]
 
 
 @item("bowl", "kitchen", "ceramic")

@@ -231,9 +231,9 @@ def tweezer(a: float, b: float, c: float) -> list[Piece]:
                 )
                 for z in (-c * h, c * h)
             ],
-            STEEL,
+            colour,
         )
-        for s in (-1, 1)
+        for s, colour in ((-1, DARK_STEEL), (1, STEEL))
     ]
     return [*legs, slab(gap, c * 0.1, BLACK).seen_only()]
 
