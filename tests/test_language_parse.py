@@ -149,7 +149,7 @@ def test_prompt_like_text_is_only_text():
         ("Brush my hair.", "brushing", "hair brush"),  # The tool's name says what it is for.
         ("lft the chair", "lifting", "chair"),  # A verb is meant where a request starts.
         ("Slide that wrench over to me.", "sliding", "wrench"),  # Behind "that" stands a noun.
-        ("This screw is stuck.", "unscrewing", "screw"),  # A complaint about a state.
+        ("The bucket is full.", "dumping out", "bucket"),  # A complaint about a state.
         ("There is mud on the rug.", "cleaning", "rug"),  # A complaint about what lies there.
         ("Roll up the towel... the blanket.", "folding", "blanket"),  # Corrected after a pause.
         ("Look at that mug, wash it.", "washing", "mug"),  # "Look" only points.

@@ -181,7 +181,7 @@ don't {other}, just {imp}
 instead of {otherger}, {imp}
 {imp}, but don't {other}
 {imp} without {otherger}
-no, don't {other}. {imp} instead""".split("\n")
+no, don't {other}. {imp} instead""".splitlines()
 )
 
 
@@ -250,7 +250,7 @@ how do i {verb} {topic}?
 what happened to {topic}?
 let's talk about {topic}
 we should {verb} {topic}
-my friend will {verb} {topic}""".split("\n")
+my friend will {verb} {topic}""".splitlines()
 )
 """Talk that asks the hand for nothing: tales, questions, opinions, bans, other people's jobs."""
 OFF_TOPIC_VERBS = word_list("off_topic_verbs")
