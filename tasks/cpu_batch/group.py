@@ -122,7 +122,13 @@ class EnvGroup:
         # First drive of each environment, and the end.
         envs = np.arange(len(self.scenes) + 1)
         self._drive_bounds = width * np.searchsorted(self.articulation_env, envs)
+        # PhysX gives back another pose than it was told by some 1e-7 m. Roots that are bolted down
+        # stay where they were told to be, lest a robot drift from reset to reset.
+        self._told_root = np.zeros((len(self.articulations), 7), dtype=np.float32)
+        self._bolted = np.zeros(len(self.articulations), dtype=bool)
         self.read()
+        self._told_root[:] = self.arrays.sim_body[self.root_row, :7]
+        self._bolted[:] = [a.root.joint.type == "fixed" for a in self.articulations]
         self._check_packing()
         self._told_target = self._state[target_source]
         self._told_target_velocity = self._state[
@@ -205,6 +211,7 @@ class EnvGroup:
         sim.sim_body[self.dynamic] = self._state[self._dynamic_source]
         sim.sim_body[self.links, :7] = self._poses[self._link_source][:, PACKED_TO_BUFFER[:7]]
         sim.sim_body[self.root_row, 7:] = self._state[self._root_source[:, 7:]]
+        sim.sim_body[self.root_row[self._bolted], :7] = self._told_root[self._bolted]
         sim.sim_qpos[:] = self._state[self._qpos_source]
         sim.sim_qvel[:] = self._state[self._qvel_source]
 
@@ -266,13 +273,14 @@ class EnvGroup:
             state = self.arrays.body[self.root_row[row]]
             self.articulations[row].set_root_pose(sapien.Pose(state[:3], state[3:7]))
             self.arrays.sim_body[self.root_row[row], :7] = state[:7]
+            self._told_root[row] = state[:7]
         self._stale[self.articulation_env[rows]] = True
 
     def write_root_velocity(self, rows: Sequence[int]) -> None:
         """Velocities of the root links that can move."""
         for row in rows:
             articulation, state = self.articulations[row], self.arrays.body[self.root_row[row]]
-            if articulation.root.joint.type != "fixed":
+            if not self._bolted[row]:
                 articulation.set_root_linear_velocity(state[7:10])
                 articulation.set_root_angular_velocity(state[10:13])
             self.arrays.sim_body[self.root_row[row], 7:] = state[7:]
