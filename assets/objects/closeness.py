@@ -59,10 +59,15 @@ def volume_error(mesh: trimesh.Trimesh, hulls: Sequence[trimesh.Trimesh]) -> flo
     return float(abs(union.volume / mesh.volume - 1))
 
 
-def protrusion(mesh: trimesh.Trimesh, hulls: Sequence[trimesh.Trimesh]) -> float:
+def protrusion(
+    mesh: trimesh.Trimesh, hulls: Sequence[trimesh.Trimesh], enough: float = np.inf
+) -> float:
     """[m] how far the union of the parts sticks out of the mesh, at sampled points of its surface.
 
     The mesh need not be closed: a point is outside where the mesh winds about it less than half.
+
+    Args:
+        enough: [m] stop at the first point found farther out; the answer is then its distance.
     """
     coarse = thinned(mesh, WOUND_FACES)
     points = _union_points(hulls)
@@ -76,6 +81,8 @@ def protrusion(mesh: trimesh.Trimesh, hulls: Sequence[trimesh.Trimesh]) -> float
         outside = winding(points[chunk], coarse.triangles) < 0.5
         for point in points[chunk[outside]]:
             worst = max(worst, _distance(coarse, point))
+            if worst > enough:
+                return worst
     return worst if worst > NEGLIGIBLE else 0.0
 
 

@@ -89,7 +89,7 @@ def _parts(pieces: list[Array]) -> tuple[Part, ...]:
 
 
 def _follows(mesh: trimesh.Trimesh, parts: Sequence[Part]) -> bool:
-    return protrusion(mesh, part_hulls(parts)) <= MAX_PROTRUSION
+    return protrusion(mesh, part_hulls(parts), MAX_PROTRUSION) <= MAX_PROTRUSION
 
 
 def _cut(mesh: trimesh.Trimesh) -> list[Array]:
@@ -107,7 +107,7 @@ def _cut(mesh: trimesh.Trimesh) -> list[Array]:
             max_convex_hull=MAX_PARTS,
             preprocess_resolution=_closing_resolution(mesh),
             resolution=500,
-            mcts_iterations=30,
+            mcts_iterations=15,
             mcts_nodes=10,
             mcts_max_depth=2,
             seed=SEED,
