@@ -89,7 +89,8 @@ def test_restored_in_mid_grasp_an_episode_goes_on_the_same(num_envs, backend):
     assert (original - again)[..., :10].abs().quantile(0.9) < 0.05  # [rad]
     if backend != "physx_cpu":
         other = make(num_envs, sim_backend=backend)
-        other.reset(seed=9)
+        other.reset(seed=3)  # Friction and mass belong to the scene: a state does not hold them.
+        roll(other, 5)
         other.unwrapped.set_state(flat)
         assert torch.equal(roll(other, 20), again)
         other.close()

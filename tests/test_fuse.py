@@ -4,6 +4,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
+import sapien
 import torch
 
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
@@ -167,10 +168,22 @@ def test_shapes_and_pictures_are_where_they_were():
     assert drawn == 13
 
 
+@pytest.fixture
+def own_physics():
+    """SAPIEN's settings are global, and other tests leave theirs."""
+    physx = sapien.physx
+    before = physx.get_scene_config(), physx.get_body_config(), physx.get_shape_config()
+    physx.set_scene_config(physx.PhysxSceneConfig())
+    physx.set_body_config(physx.PhysxBodyConfig())
+    physx.set_shape_config(physx.PhysxShapeConfig())
+    yield
+    physx.set_scene_config(before[0])
+    physx.set_body_config(before[1])
+    physx.set_shape_config(before[2])
+
+
 def thrown_about(fusion, path, palm_mass=None):
     """(200, 21) [rad] joints of the robot that SAPIEN loads, driven from one posture to another."""
-    import sapien
-
     path.write_text(urdf(fusion, {}))
     stage = sapien.Scene([sapien.physx.PhysxCpuSystem()])
     loader = stage.create_urdf_loader()
@@ -194,6 +207,7 @@ def thrown_about(fusion, path, palm_mass=None):
     return np.array(seen)
 
 
+@pytest.mark.usefixtures("own_physics")
 def test_sapien_moves_it_as_before(tmp_path):
     """Driven about, the robot stays within 0.5 mrad of the one with all its links.
 
