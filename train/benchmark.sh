@@ -31,9 +31,9 @@ table() { # name, flags
 }
 FOLLOW=(--policy follow --distance exact)
 table table1-own --table paper --search 9 --episodes 100 "${FOLLOW[@]}"
-table table1-stored --table paper --episodes 100 "${FOLLOW[@]}"
-table feasible-own --table feasible --search 2 --episodes 20 "${FOLLOW[@]}"
-table feasible-stored --table feasible --episodes 20 "${FOLLOW[@]}"
+table table1-stored --table paper --episodes 20 "${FOLLOW[@]}"
+table feasible-own --table feasible --search 2 --episodes 10 "${FOLLOW[@]}"
+table feasible-stored --table feasible --episodes 10 "${FOLLOW[@]}"
 for noise in blind hard; do
     row() { # policy, distance
         table "$1-$2-$noise" --table paper --search 9 --noise "$noise" --episodes 10 \
