@@ -29,6 +29,7 @@ RESULT_SPECIFICITY = 3  # "Push it shut" says closing more surely than pushing.
 RESULTS = word_map("results")
 RESULTLESS = word_set("resultless")
 """Verbs that keep a state instead of bringing it about: "hold the door open"."""
+LONGEST_SAID = 160  # Characters of a request beyond which its clause alone is weighed.
 LITERAL_DISCOUNT = 1.0  # What "clean" loses as cleaning where "clean|dishes" says washing.
 VAGUE_BONUS = 2.0  # Log-odds of a phrase less specific than the best.
 READINGS = {"clause": 0.65, "said": 0.15, "verb": 0.12, "objects": 0.08}
@@ -202,9 +203,11 @@ def score_actions(
     classes = (*load_knowledge().actions, NO_ACTION)
     whole = None
     try:
-        logits, heard = meaning_logits([clause.text, said or clause.text])
+        other = said not in ("", clause.text) and len(said) <= LONGEST_SAID
+        texts = [clause.text, said] if other else [clause.text]
+        readings = meaning_logits(texts)
+        logits, whole = readings[0], np.exp(readings[-1])
         classes = load_head().classes
-        whole = np.exp(heard)
     except EncoderMissingError:
         logits = np.zeros(len(classes))
     no_action = float(np.exp(logits[classes.index(NO_ACTION)]))

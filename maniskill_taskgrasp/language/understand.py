@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from maniskill_taskgrasp.errors import echo
 from maniskill_taskgrasp.language.actions import (
+    LONGEST_SAID,
     ActionScores,
     most_frequent_parameters,
     score_actions,
@@ -148,7 +149,8 @@ def read_whole(
         silent = not any(token.pos_ in {"VERB", "ADP"} for token in doc)
         told = any(token.tag_ == "VBD" for token in doc)
         named = bool(mentions) or object_override is not None
-        if segment.asking or denied or silent or told or not named:
+        long = len(segment.text) > LONGEST_SAID
+        if segment.asking or denied or silent or told or long or not named:
             continue
         clause = clause_without_verb(doc, mentions, segment.text)
         scores = score_actions(clause, said=segment.text)
