@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,9 @@ TABLE_CENTRE_X = 0.10  # [m] leaves room for the pedestal.
 TABLE_FRICTION = 0.5  # Fact sheet, section 5.1.
 TABLE_COLOUR = (0.72, 0.56, 0.40, 1.0)
 LEG_COLOUR = (0.25, 0.25, 0.27, 1.0)
+SOLVER_ITERATIONS = 12
+LIGHT = 0.036  # [kg] lighter things ask for more iterations, in proportion, up to:
+MOST_ITERATIONS = 48
 
 
 def build_table(scene: ManiSkillScene) -> None:
@@ -61,12 +65,24 @@ def build_objects(scene: ManiSkillScene, placements: list[Placement]) -> tuple[A
         add_object(builder, placement.model, visual=scene.can_render())
         builder.initial_pose = sapien.Pose(placement.position, placement.quat_wxyz)
         objects.append(builder.build(f"object-{env}"))
+        iterations = solver_iterations(placement.model.mass_kg)
+        objects[-1]._bodies[0].set_solver_position_iterations(iterations)
         builder = scene.create_actor_builder()
         builder.set_scene_idxs([env])
         add_fixture(builder, placement.presentation, visual=scene.can_render())
         builder.initial_pose = Pose.create(placement.fixture_pose)
         fixtures.append(builder.build_kinematic(f"fixture-{env}"))
     return _merged(scene, objects, "object"), _merged(scene, fixtures, "fixture")
+
+
+def solver_iterations(mass: float) -> int:
+    """Position iterations that a squeezed object of a mass [kg] needs.
+
+    The solver passes force from finger to finger through the object, a little each iteration and
+    the less the lighter it is. Measured on a pinched cylinder of 8 x 14 mm, 0.6 Nm motors: 8 N in
+    the end, of which 12 iterations reach 6.2 N at 30 g and 1.7 N at 12.5 g, 36 reach 7.6 N there.
+    """
+    return min(MOST_ITERATIONS, math.ceil(SOLVER_ITERATIONS * max(1.0, LIGHT / mass)))
 
 
 def _merged(scene: ManiSkillScene, actors: list[Actor], name: str) -> Actor:

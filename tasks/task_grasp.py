@@ -111,7 +111,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             control_freq=CONTROL_FREQ,
             scene_config=SceneConfig(
                 contact_offset=0.005,
-                solver_position_iterations=12,
+                solver_position_iterations=scene.SOLVER_ITERATIONS,
                 enable_enhanced_determinism=True,
             ),
         )

@@ -38,6 +38,9 @@ CAMERA_EYE = (0.0, 0.09, 0.015)  # [m] under the wrist, in hand_base
 CAMERA_TARGET = (-0.03, 0.11, 0.13)  # [m] in front of the fingers, to see what comes
 CAMERA_UP = (0.0, -1.0, 0.0)  # Out of the back of the hand: up in the picture, palm down.
 GRASP_FORCE = 0.5  # [N] least force of the thumb and of a finger that counts as grasping.
+PRESSING_ITERATIONS = 32
+"""Least solver position iterations of the modes in which the arm may press the hand into a table:
+with 12 a knuckle goes 0.052 rad past its stop under 250 N, with 32 0.007 (docs/robot.md)."""
 
 if "sawyer_ar10" in REGISTERED_AGENTS:
     raise RuntimeError(
@@ -127,6 +130,15 @@ class SawyerAR10(BaseAgent):
         for name in (*self.hand.actuators, *(c.joint for c in self.hand.couplings)):
             for joint in self.robot.active_joints_map[name]._objs:
                 joint.set_armature(armature)
+
+    def set_control_mode(self, control_mode: str | None = None) -> None:
+        """As ManiSkill's; modes without a planned path make the solver keep the joints' stops."""
+        super().set_control_mode(control_mode)  # type: ignore[arg-type]
+        if "synergy" in self.control_mode:
+            return
+        for body in self.robot._objs:
+            least = max(body.get_solver_position_iterations(), PRESSING_ITERATIONS)
+            body.set_solver_position_iterations(least)
 
     def _after_init(self) -> None:
         self.tcp = self.robot.links_map[self.hand.palm_frame]
