@@ -1,4 +1,4 @@
-"""Where the object really stands: an extended Kalman filter over what the hand senses.
+"""Where the object really stands: an iterated extended Kalman filter over what the hand senses.
 
 The state is the object's offset from its nominal pose (x, y, yaw) and the constant error of each
 part's distance. Distances before the closing, or touch during it, update it. All is batched, and
@@ -27,6 +27,7 @@ TOUCH_ERROR = 0.001  # [m] distance that a part may still have when its contact 
 TOUCH_FORCE = 0.05  # [N] contact that counts as felt.
 PUSH_STD = (0.0015, 0.0015, 0.02)
 """[m, m, rad] by which a touched object may move between two updates."""
+PASSES = 2  # Of an update: distances bend over the centimetres that the object may be off.
 UNSEEN = 1.0  # [m] error of a distance that says nothing.
 LIMIT = (0.03, 0.03, 0.35)
 """[m, m, rad] no offset is believed to be larger."""
@@ -81,24 +82,28 @@ class OffsetFilter:
     def _update(
         self, rows: Tensor, sensed: Tensor, expected: Distances, bias: Tensor, error: Tensor
     ) -> None:
-        """Kalman update, linear about the present mean.
+        """Iterated Kalman update: linear about the mean, then once more about where that led.
 
         Args:
             bias: (num_parts, num_parts) how the constant errors enter what is sensed.
             error: (n, num_parts) [m] standard deviation of each value's own error.
         """
-        mean, covariance = self.mean[rows], self.covariance[rows]
-        offset = mean[:, :3]
-        steps = torch.diag(torch.tensor(STEP, device=mean.device))
-        columns = [
-            (expected(offset + step) - expected(offset - step)) / (2 * step.sum()) for step in steps
-        ]
-        model = torch.cat([torch.stack(columns, 2), bias.expand(len(rows), -1, -1)], 2)
-        surprise = sensed - expected(offset) - (bias @ mean[:, 3:, None])[..., 0]
-        spread = model @ covariance @ model.transpose(1, 2) + torch.diag_embed(error**2)
-        gain = torch.linalg.solve(spread, model @ covariance).transpose(1, 2)
-        mean = mean + (gain @ surprise[..., None])[..., 0]
-        mean[:, :3] = torch.minimum(torch.maximum(mean[:, :3], -self._limit), self._limit)
+        prior, covariance = self.mean[rows], self.covariance[rows]
+        steps = torch.diag(torch.tensor(STEP, device=prior.device))
+        mean = prior
+        for _ in range(PASSES):
+            offset = mean[:, :3]
+            columns = [
+                (expected(offset + step) - expected(offset - step)) / (2 * step.sum())
+                for step in steps
+            ]
+            model = torch.cat([torch.stack(columns, 2), bias.expand(len(rows), -1, -1)], 2)
+            surprise = sensed - expected(offset) - (bias @ mean[:, 3:, None])[..., 0]
+            surprise = surprise - (model @ (prior - mean)[..., None])[..., 0]
+            spread = model @ covariance @ model.transpose(1, 2) + torch.diag_embed(error**2)
+            gain = torch.linalg.solve(spread, model @ covariance).transpose(1, 2)
+            mean = prior + (gain @ surprise[..., None])[..., 0]
+            mean[:, :3] = torch.minimum(torch.maximum(mean[:, :3], -self._limit), self._limit)
         self.mean[rows] = mean
         self.covariance[rows] = covariance - gain @ model @ covariance
 
