@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import os
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass, replace
@@ -14,6 +15,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
+import torch
 import tyro
 from scipy.cluster.vq import kmeans2
 from tqdm import tqdm
@@ -145,6 +147,8 @@ def search(topology: Topology, obj: str, config: PregraspConfig, done: list[Gras
 
 
 def main(config: PregraspConfig) -> None:
+    torch.set_num_threads(1)  # Tensors are small: threads would wait for each other,
+    os.environ.setdefault("OMP_NUM_THREADS", "1")  # also in the processes that search.
     done: list[Grasp] = []
     if config.out.exists():
         done = [Grasp(**row) for row in json.loads(config.out.read_text("utf-8"))]
