@@ -332,7 +332,7 @@ Command = (
 
 def main(args: list[str] | None = None) -> None:
     """Run one command; exit code 0 when it ran, 2 with one line on stderr for bad input."""
-    # Tensors here are small: on a busy machine torch's threads wait for each other, 20 times as long.
+    # Tensors are small: on a busy machine torch's threads wait for each other, 20 times as long.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     try:
         command = _parse(args)
