@@ -21,7 +21,7 @@ from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
 from maniskill_taskgrasp.agents.sawyer_ar10.agent import SawyerAR10
 from maniskill_taskgrasp.assets.objects import library
-from maniskill_taskgrasp.episode import CONTROL_FREQ, LIFT_START, MAX_EPISODE_STEPS
+from maniskill_taskgrasp.episode import CLOSE_START, CONTROL_FREQ, LIFT_START, MAX_EPISODE_STEPS
 from maniskill_taskgrasp.tasks import rewards, scene
 from maniskill_taskgrasp.tasks.arguments import (
     DISTANCES,
@@ -227,7 +227,8 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
     def _place_robot(self, env_idx: Tensor, plans: Plans) -> None:
         arm, hand = plans.path[:, 0].cpu().numpy(), plans.preshape.cpu().numpy()
         self.agent.reset(torch.from_numpy(self.agent.full_qpos(arm, hand)).to(self.device))
-        self.agent.set_plan(env_idx, plans.path, plans.preshape, plans.closing, LIFT_START)
+        shapes = plans.preshape, plans.closing
+        self.agent.set_plan(env_idx, plans.path, *shapes, LIFT_START, CLOSE_START)
 
     def _place_objects(self, env_idx: Tensor, plans: Plans) -> None:
         rng = self._batched_episode_rng[env_idx]

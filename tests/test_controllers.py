@@ -23,6 +23,7 @@ from maniskill_taskgrasp.agents.sawyer_ar10.agent import REST_ARM
 from maniskill_taskgrasp.agents.sawyer_ar10.control_modes import control_modes
 from maniskill_taskgrasp.agents.sawyer_ar10.description import ARM_JOINT_NAMES, SAWYER_AR10
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
+from maniskill_taskgrasp.episode import CLOSE_START
 from maniskill_taskgrasp.topology import TOPOLOGIES
 
 # -- pure functions ----------------------------------------------------------------------------
@@ -178,6 +179,22 @@ def test_the_residual_keeps_to_its_rate():
     env.close()
 
 
+def test_the_hand_keeps_its_preshape_until_it_may_close():
+    """Whatever the action; then it closes."""
+    env = make("pd_synergy_wrist")
+    preshape, closing = (torch.tensor(s)[None] for s in vars_of("power_pad_abd_2"))
+    path = torch.tensor(REST_ARM).expand(1, 60, 7)
+    env.agent.set_plan(torch.tensor([0]), path, preshape, closing, 40, wait=30)
+    hand = env.agent.controller.controllers["hand"]
+    for _ in range(30):
+        env.step(env.single_action_space.high)
+    torch.testing.assert_close(hand.command, preshape.float())
+    for _ in range(30):
+        env.step(env.single_action_space.high)
+    torch.testing.assert_close(hand.command, closing.float())
+    env.close()
+
+
 # -- memory ------------------------------------------------------------------------------------
 
 
@@ -217,7 +234,7 @@ def test_memory_is_flat_and_complete():
     env = make("pd_synergy_wrist")
     memory = env.agent.get_controller_state()
     assert set(memory["arm"]) == {"command", "path", "step", "residual", "open_steps"}
-    assert set(memory["hand"]) == {"command", "preshape", "closing"}
+    assert set(memory["hand"]) == {"command", "preshape", "closing", "wait"}
     for fields in memory.values():
         assert all(f.ndim == 2 and f.dtype == torch.float32 for f in fields.values())
     env.close()
@@ -250,7 +267,7 @@ def test_each_environment_closes_its_own_topology(four):
     assert len({tuple(row.tolist()) for row in hand.closing}) == 4
     action = torch.zeros(4, 14)
     action[:, 4:] = 1.0
-    for _ in range(34):  # 1.7 rad at 1.1 rad/s.
+    for _ in range(CLOSE_START + 34):  # 1.7 rad at 1.1 rad/s.
         four.step(action)
     assert (hand.command - hand.closing).abs().max() <= 1e-5
 

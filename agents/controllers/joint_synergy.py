@@ -36,15 +36,19 @@ class JointSynergyController(CoupledHandController):
     """Activations in [0, 1] of the posture pair that `set_postures` gave each environment.
 
     An environment that was given none uses the config's posture, and without one it holds still.
+    Until the palm has arrived the hand keeps its preshape whatever the action: fingers that close
+    on the way push the object over (facts: simulation, section 2).
     """
 
     config: JointSynergyControllerConfig
-    _memory = ("command", "preshape", "closing")
+    _memory = ("command", "preshape", "closing", "wait")
 
     def _initialize_joints(self) -> None:
         super()._initialize_joints()
         self.preshape = self.command.clone()
         self.closing = self.command.clone()
+        self.wait = torch.zeros(len(self.command), dtype=torch.long, device=self.device)
+        """(num_envs,) control steps for which the hand keeps its preshape."""
         spread = np.asarray(self.config.spread, dtype=np.float32)
         self._spread = torch.from_numpy(spread).to(self.device)
 
@@ -56,15 +60,20 @@ class JointSynergyController(CoupledHandController):
         own, now = self.config.posture, self.command[envs]
         self.preshape[envs] = now if own is None else torch.tensor(own.preshape).to(now)
         self.closing[envs] = now if own is None else torch.tensor(own.closing).to(now)
+        self.wait[envs] = 0
 
-    def set_postures(self, env_idx: Tensor, preshape: Tensor, closing: Tensor) -> None:
+    def set_postures(
+        self, env_idx: Tensor, preshape: Tensor, closing: Tensor, wait: int = 0
+    ) -> None:
         """Give environments the postures of their topology.
 
         Args:
             env_idx: (n,) environments.
             preshape: (n, num_actuators) [rad].
             closing: (n, num_actuators) [rad].
+            wait: control steps before the hand begins to close.
         """
+        self.wait[env_idx] = wait
         self.preshape[env_idx] = preshape.to(self.preshape)
         self.closing[env_idx] = closing.to(self.closing)
         self._planned[env_idx] = True
@@ -78,7 +87,12 @@ class JointSynergyController(CoupledHandController):
         return torch.where(moves, share, 1.0)
 
     def wanted_qpos(self, action: Tensor) -> Tensor:
-        return synergy_to_qpos(action @ self._spread, self.preshape, self.closing)
+        activation = (action @ self._spread) * (self.wait == 0)[:, None]
+        return synergy_to_qpos(activation, self.preshape, self.closing)
+
+    def set_action(self, action: Tensor) -> None:
+        super().set_action(action)
+        self.wait = (self.wait - 1).clamp(min=0)
 
 
 @dataclass(kw_only=True)

@@ -173,7 +173,13 @@ class SawyerAR10(BaseAgent):
             controller.set_state(state.get(uid), env_idx)
 
     def set_plan(
-        self, env_idx: Tensor, path: Tensor, preshape: Tensor, closing: Tensor, open_steps: int
+        self,
+        env_idx: Tensor,
+        path: Tensor,
+        preshape: Tensor,
+        closing: Tensor,
+        open_steps: int,
+        wait: int = 0,
     ) -> None:
         """Give environments their arm path and postures, during or after their reset.
 
@@ -186,6 +192,7 @@ class SawyerAR10(BaseAgent):
             preshape: (n, num_actuators) [rad] hand posture at activation 0.
             closing: (n, num_actuators) [rad] hand posture at activation 1.
             open_steps: control steps during which a palm residual may change.
+            wait: control steps for which the hand keeps its preshape.
         """
         arm, hand = (self.controller.controllers[uid] for uid in ("arm", "hand"))
         if isinstance(arm, ArmPathController):
@@ -193,7 +200,7 @@ class SawyerAR10(BaseAgent):
         if isinstance(arm, PalmResidualController):
             arm.open_steps[env_idx] = open_steps
         if isinstance(hand, JointSynergyController):
-            hand.set_postures(env_idx, preshape, closing)
+            hand.set_postures(env_idx, preshape, closing, wait)
 
     @property
     def tcp_pos(self) -> Tensor:
