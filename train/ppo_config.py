@@ -195,6 +195,9 @@ PRESETS: dict[str, dict[str, Any]] = {
         "num_envs": 50,
         "num_steps": 50,
         "num_minibatches": 10,
+        # Their reward is negative until something is touched: were failed episodes ended, a policy
+        # would learn to fail soon.
+        "partial_reset": False,
         # Rewards reach 1000; a plain change of unit keeps the value loss in a range Adam likes.
         "reward_scale": 1e-3,
     },
