@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import torch
 from torch import Tensor
@@ -91,16 +91,10 @@ class ContactSurfaces:
         # The palm works with its face, whose normal is +y, as that of a finger's pad.
         palm = self.part_of_link == PALM
         good = torch.where(palm, along_pad >= PALM_NORMAL, good)
-        return ContactShares(
-            force=self._by_part(force),
-            good=self._by_part(force * good),
-            back=self._by_part(force * (along_pad < BACK_COSINE)),
-            distal=self._by_part(force * self._distal),
-        )
-
-    def _by_part(self, force: Tensor) -> Tensor:
-        total = force.new_zeros(len(force), len(PARTS))
-        return total.index_add_(1, self.part_of_link, force)
+        back = along_pad < BACK_COSINE
+        by_link = torch.stack([force, force * good, force * back, force * self._distal])
+        total = force.new_zeros(len(by_link), len(force), len(PARTS))
+        return ContactShares(*total.index_add_(2, self.part_of_link, by_link))
 
 
 @cache
@@ -134,24 +128,29 @@ class _Grasp:
     thumb_rotation: Tensor
     pip: Tensor
 
-    @property
+    @cached_property
     def touches(self) -> Tensor:
         """(num_envs, num_parts) bool"""
         return self.shares.force >= TOUCH_FORCE
 
-    @property
+    @cached_property
     def total(self) -> Tensor:
         """(num_envs,) [N]"""
         return self.shares.force.sum(1)
 
-    @property
+    @cached_property
     def abducted(self) -> Tensor:
         """(num_envs,) bool: the thumb stands opposite the fingers."""
         return self.thumb_rotation >= THUMB_ABDUCTED
 
 
+def asked_of(topology_index: Tensor) -> dict[str, Tensor]:
+    """What topologies (num_envs,), places in `topology.TOPOLOGIES`, ask for, row by row."""
+    return {k: v[topology_index] for k, v in _topology_table(topology_index.device).items()}
+
+
 def in_topology(
-    shares: ContactShares, topology_index: Tensor, thumb_rotation: Tensor, pip: Tensor
+    shares: ContactShares, asked: dict[str, Tensor], thumb_rotation: Tensor, pip: Tensor
 ) -> Tensor:
     """Is the hand in the topology it was asked for?
 
@@ -160,14 +159,13 @@ def in_topology(
 
     Args:
         shares: forces averaged over the last moments of the hold.
-        topology_index: (num_envs,) long, `topology.TOPOLOGIES`.
+        asked: what `asked_of` says of the topologies.
         thumb_rotation: (num_envs,) [rad] commanded rotation of the thumb.
         pip: (num_envs, 4) [rad] middle joints of index, middle, ring, little.
 
     Returns:
         (num_envs,) bool
     """
-    asked = {k: v[topology_index] for k, v in _topology_table(shares.force.device).items()}
     grasp = _Grasp(shares, asked, thumb_rotation, pip)
     unnamed = (shares.force * asked["unnamed"]).sum(1)
     named = (grasp.touches | ~asked["parts"]).all(1)

@@ -26,8 +26,13 @@ def quat_multiply(a: Tensor, b: Tensor) -> Tensor:
 def quat_to_matrix(quat: Tensor) -> Tensor:
     """(..., 3, 3) rotation of a unit quaternion (..., 4) wxyz."""
     # Entries are sums of products of two components: two calls instead of forty.
-    products = (quat[..., :, None] * quat[..., None, :]).flatten(-2)
+    products = (quat[..., :, None] * quat[..., None, :]).view(-1, 16)
     return (products @ _entries(quat.dtype, quat.device)).view(*quat.shape[:-1], 3, 3)
+
+
+def pose_to_frame(pose: Tensor) -> Tensor:
+    """(..., 3, 4) rotation and, as last column, position [m] of a pose (..., 7) [m, wxyz]."""
+    return torch.cat([quat_to_matrix(pose[..., 3:]), pose[..., :3, None]], -1)
 
 
 @cache

@@ -19,7 +19,6 @@ class LinkContacts:
     def __init__(self, scene: ManiSkillScene, links: list[Link], obj: Actor) -> None:
         self._scene = scene
         self._num_links = len(links)
-        self._num_envs = scene.num_envs
         if scene.gpu_sim_enabled:
             pairs = [
                 (link._bodies[env], body) for env, body in enumerate(obj._bodies) for link in links
@@ -33,8 +32,7 @@ class LinkContacts:
         """(num_envs, num_links, 3) [N] force of the object on each link, world frame."""
         if self._scene.gpu_sim_enabled:
             self._scene.px.gpu_query_contact_pair_impulses(self._query)
-            impulses = self._query.cuda_impulses.torch().clone()
-            impulses = impulses.view(self._num_envs, self._num_links, 3)
+            impulses = self._query.cuda_impulses.torch().view(-1, self._num_links, 3)
         else:
             impulses = self._sum_of_contacts()
         return impulses / self._scene.px.timestep

@@ -65,7 +65,7 @@ class OffsetFilter:
         Args:
             rows: (n,) environments.
             sensed: (n, num_parts) [m].
-            expected: object offset (n, 3) -> distances (n, num_parts) [m] now.
+            expected: object offsets (n, k, 3) -> distances (n, k, num_parts) [m] now.
         """
         bias = torch.eye(sensed.shape[1], device=sensed.device)
         error = torch.full_like(sensed, MODEL_ERROR)
@@ -89,16 +89,11 @@ class OffsetFilter:
             error: (n, num_parts) [m] standard deviation of each value's own error.
         """
         prior, covariance = self.mean[rows], self.covariance[rows]
-        steps = torch.diag(torch.tensor(STEP, device=prior.device))
         mean = prior
         for _ in range(PASSES):
-            offset = mean[:, :3]
-            columns = [
-                (expected(offset + step) - expected(offset - step)) / (2 * step.sum())
-                for step in steps
-            ]
-            model = torch.cat([torch.stack(columns, 2), bias.expand(len(rows), -1, -1)], 2)
-            surprise = sensed - expected(offset) - (bias @ mean[:, 3:, None])[..., 0]
+            at_mean, slope = _linear(expected, mean[:, :3])
+            model = torch.cat([slope, bias.expand(len(rows), -1, -1)], 2)
+            surprise = sensed - at_mean - (bias @ mean[:, 3:, None])[..., 0]
             surprise = surprise - (model @ (prior - mean)[..., None])[..., 0]
             spread = model @ covariance @ model.transpose(1, 2) + torch.diag_embed(error**2)
             gain = torch.linalg.solve(spread, model @ covariance).transpose(1, 2)
@@ -108,19 +103,29 @@ class OffsetFilter:
         self.covariance[rows] = covariance - gain @ model @ covariance
 
 
+def _linear(expected: Distances, offset: Tensor) -> tuple[Tensor, Tensor]:
+    """Distances (n, num_parts) [m] at offsets (n, 3), and how they change with them
+    (n, num_parts, 3), by central differences."""
+    steps = torch.diag(torch.tensor(STEP, device=offset.device))
+    around = torch.cat([torch.zeros_like(steps[:1]), steps, -steps])
+    at_offset, ahead, behind = expected(offset[:, None] + around).split([1, 3, 3], 1)
+    slope = (ahead - behind) / (2 * steps.sum(1))[:, None]
+    return at_offset[:, 0], slope.transpose(1, 2)
+
+
 def displaced(pose: Tensor, centre: Tensor, offset: Tensor) -> Tensor:
     """Poses moved and turned about a vertical.
 
     Args:
-        pose: (n, 7) [m, wxyz].
-        centre: (n, 3) [m] point of the vertical.
-        offset: (n, 3) [m, m, rad] x, y and yaw.
+        pose: (..., 7) [m, wxyz].
+        centre: (..., 3) [m] point of the vertical.
+        offset: (..., 3) [m, m, rad] x, y and yaw.
     """
-    turn = yaw_quat(offset[:, 2])
-    arm = (pose[:, :3] - centre)[..., None]
+    turn = yaw_quat(offset[..., 2])
+    arm = (pose[..., :3] - centre)[..., None]
     moved = centre + (quat_to_matrix(turn) @ arm)[..., 0]
-    moved = moved + torch.nn.functional.pad(offset[:, :2], (0, 1))
-    return torch.cat([moved, quat_multiply(turn, pose[:, 3:])], 1)
+    moved = moved + torch.nn.functional.pad(offset[..., :2], (0, 1))
+    return torch.cat([moved, quat_multiply(turn, pose[..., 3:])], -1)
 
 
 def following(offset: Tensor, palm: Tensor) -> Tensor:

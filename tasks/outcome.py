@@ -74,14 +74,17 @@ class Outcome:
         """
         tried = step > LIFT_START
         over = step >= MAX_EPISODE_STEPS
+        lifted = self.max_lift >= OFF_TABLE
+        lost = over | (tried & (lift < 0.5 * self.max_lift))
         failure = torch.zeros_like(step)
-        lost = tried & (self.max_lift >= OFF_TABLE) & (lift < 0.5 * self.max_lift)
-        failure[over & (self.max_lift >= OFF_TABLE)] = FAILURES.index("slipped")
-        failure[lost] = FAILURES.index("slipped")
-        failure[(lost | over) & self.was_up] = FAILURES.index("dropped")
-        failure[over & (self.max_lift < OFF_TABLE)] = FAILURES.index("not_lifted")
-        failure[tried & ~self.touched] = FAILURES.index("no_contact")
-        failure[self.wild] = FAILURES.index("unstable")
-        failure[~self.reachable & over] = FAILURES.index("unreachable")
-        failure[self.success] = FAILURES.index("none")
+        for name, happened in (  # Later ones explain more.
+            ("slipped", lifted & lost),
+            ("dropped", self.was_up & lost),
+            ("not_lifted", over & ~lifted),
+            ("no_contact", tried & ~self.touched),
+            ("unstable", self.wild),
+            ("unreachable", over & ~self.reachable),
+            ("none", self.success),
+        ):
+            failure = torch.where(happened, FAILURES.index(name), failure)
         return failure

@@ -12,7 +12,7 @@ from mani_skill.utils.structs import Actor
 from mani_skill.utils.structs.link import Link
 from torch import Tensor
 
-from maniskill_taskgrasp.agents.rotations import quat_to_matrix
+from maniskill_taskgrasp.agents.rotations import pose_to_frame
 from maniskill_taskgrasp.tasks.contacts import LinkContacts
 from maniskill_taskgrasp.tasks.sensing import (
     HandBoxes,
@@ -26,16 +26,19 @@ from maniskill_taskgrasp.tasks.sensing import (
 class Reading:
     """What the hand feels at one instant, and where the object is."""
 
+    touch: Tensor
+    """(num_envs, num_links) [N] size of the force on each hand link."""
+
     local_forces: Tensor
     """(num_envs, num_links, 3) [N] force of the object on each hand link, link frame."""
     forces: Tensor
     """(num_envs, num_parts) [N]"""
     distances: Tensor
     """(num_envs, num_parts) [m]"""
-    height: Tensor
-    """(num_envs,) [m] of the object's origin in the world."""
-    link_poses: Tensor
-    """(num_envs, num_links, 7) [m, wxyz] world."""
+    obj_pose: Tensor
+    """(num_envs, 7) [m, wxyz] world."""
+    link_frames: Tensor
+    """(num_envs, num_links, 3, 4) rotation and position [m], world."""
 
 
 class LinkPoses:
@@ -97,8 +100,8 @@ class HandSenses:
             local_forces: (num_envs, num_links, 3) [N] link frame, in place of the contacts of the
                 last physics step: those are void once an environment was put into another state.
         """
-        link_poses, obj_pose = self._poses(), self._obj.pose.raw_pose
-        rotation = quat_to_matrix(link_poses[..., 3:])
+        frames, obj_pose = pose_to_frame(self._poses()), self._obj.pose.raw_pose
+        rotation, obj_frame = frames[..., :3], pose_to_frame(obj_pose)[:, None]
         if local_forces is None:
             forces = self._contacts.forces()
             local_forces = (forces[..., None, :] @ rotation)[..., 0, :]
@@ -106,22 +109,25 @@ class HandSenses:
             forces = (rotation @ local_forces[..., None])[..., 0]
         return Reading(
             local_forces=local_forces,
+            touch=local_forces.norm(dim=-1),
             forces=part_forces(forces, self._part_of_link, self._num_parts),
-            distances=part_distances(link_poses, self._boxes, self._surfaces, obj_pose),
-            height=obj_pose[:, 2],
-            link_poses=link_poses,
+            distances=part_distances(frames, self._boxes, self._surfaces, obj_frame)[:, 0],
+            obj_pose=obj_pose,
+            link_frames=frames,
         )
 
-    def imagining(self, rows: Tensor, link_poses: Tensor) -> Callable[[Tensor], Tensor]:
+    def imagining(self, rows: Tensor, link_frames: Tensor) -> Callable[[Tensor], Tensor]:
         """What distances would be if objects were elsewhere.
 
         Args:
             rows: (n,) environments, rising.
-            link_poses: (n, num_links, 7) [m, wxyz] world, of theirs.
+            link_frames: (n, num_links, 3, 4) world, of theirs.
 
         Returns:
-            object poses (n, 7) [m, wxyz] world -> (n, num_parts) [m].
+            object poses (n, k, 7) [m, wxyz] world -> (n, k, num_parts) [m].
         """
         every = len(rows) == len(self._surfaces.centres)
         surfaces = self._surfaces if every else self._surfaces.rows(rows)
-        return lambda obj_pose: part_distances(link_poses, self._boxes, surfaces, obj_pose)
+        return lambda poses: part_distances(
+            link_frames, self._boxes, surfaces, pose_to_frame(poses)
+        )

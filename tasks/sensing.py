@@ -11,7 +11,6 @@ import torch
 from torch import Tensor
 
 from maniskill_taskgrasp.agents.hand import PARTS
-from maniskill_taskgrasp.agents.rotations import quat_to_matrix
 from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, Primitive, rotation
 from maniskill_taskgrasp.tasks.surface import Surface
 
@@ -39,10 +38,8 @@ class HandBoxes:
 
     link: Tensor
     """(num_parts * width,) long link of each box."""
-    position: Tensor
-    """(num_parts * width, 3) [m] in the link frame."""
-    rotation: Tensor
-    """(num_parts * width, 3, 3) from box to link frame."""
+    from_link: Tensor
+    """(num_parts * width, 3, 4) rotation and shift [m] from the link frame to the box."""
     half_size: Tensor
     """(num_parts * width, 3, 1) [m]"""
     width: int
@@ -69,10 +66,11 @@ class HandBoxes:
         def tensor(rows: list[Any]) -> Tensor:
             return torch.tensor(np.array(rows), dtype=torch.float32, device=device)
 
+        turns = [rotation(box.rpy).T for _, box in boxes]
+        shifts = [-turn @ box.xyz for turn, (_, box) in zip(turns, boxes, strict=True)]
         return cls(
             link=torch.tensor([link_names.index(link) for link, _ in boxes], device=device),
-            position=tensor([box.xyz for _, box in boxes]),
-            rotation=tensor([rotation(box.rpy) for _, box in boxes]),
+            from_link=torch.cat([tensor(turns), tensor(shifts)[..., None]], -1),
             half_size=tensor([np.asarray(box.size) / 2 for _, box in boxes])[:, :, None],
             width=width,
         )
@@ -114,57 +112,60 @@ class ObjectSurfaces:
 
 
 def part_distances(
-    link_poses: Tensor, boxes: HandBoxes, surfaces: ObjectSurfaces, obj_pose: Tensor
+    link_frames: Tensor, boxes: HandBoxes, surfaces: ObjectSurfaces, obj_frames: Tensor
 ) -> Tensor:
-    """Closest distance of each hand part to the object, 0 where they touch.
+    """Closest distance of each hand part to the object in one or several poses, 0 at contact.
 
     Every box is compared with every cell's centre; in the nearest cells of each part, with every
     patch's middle; and the nearest patch is measured as the flat piece that it is.
 
     Args:
-        link_poses: (num_envs, num_links, 7) [m, wxyz] world.
+        link_frames: (num_envs, num_links, 3, 4) rotation and position [m], world.
         boxes: the hand's boxes, numbered by the same links.
         surfaces: of the objects.
-        obj_pose: (num_envs, 7) [m, wxyz] world.
+        obj_frames: (num_envs, num_poses, 3, 4) rotation and position [m], world.
 
     Returns:
-        (num_envs, num_parts) [m]
+        (num_envs, num_poses, num_parts) [m]
     """
-    turn, shift = _object_to_boxes(link_poses, boxes, obj_pose)
-    num_envs, num_cells = len(turn), surfaces.centres.shape[2]
-    num_parts, num_patches = len(boxes.link) // boxes.width, surfaces.middles.shape[1] // 3
-    far = torch.baddbmm(shift.flatten(1, 2), turn.flatten(1, 2), surfaces.centres)
-    gaps = box_distance_squared(far.view(num_envs, -1, 3, num_cells), boxes.half_size)
-    near = gaps.view(num_envs * num_parts, -1).topk(NEAREST_CELLS, largest=False, sorted=False)
-    row = torch.arange(len(near.indices), device=turn.device)[:, None]
+    num_envs, num_poses = obj_frames.shape[:2]
+    num_cells, num_patches = surfaces.centres.shape[2], surfaces.middles.shape[1] // 3
+    num_boxes = len(boxes.link)
+    num_parts = num_boxes // boxes.width
+    frames = _object_to_boxes(link_frames, boxes, obj_frames)
+    rows = frames.view(num_envs, -1, 4)
+    far = torch.baddbmm(rows[..., 3:], rows[..., :3], surfaces.centres)
+    gaps = box_distance_squared(far.view(-1, num_boxes, 3, num_cells), boxes.half_size)
+    near = gaps.view(-1, boxes.width * num_cells).topk(NEAREST_CELLS, largest=False, sorted=False)
+    row = torch.arange(len(near.indices), device=rows.device)[:, None]
     # Boxes and cells numbered through all environments; index_select is much faster than [].
     box = (near.indices // num_cells + row * boxes.width).flatten()
-    cell = (near.indices % num_cells + row // num_parts * num_cells).flatten()
-    turn = turn.view(-1, 3, 3).index_select(0, box)
-    shift = shift.view(-1, 3, 1).index_select(0, box)
-    half_size = boxes.half_size.index_select(0, box % len(boxes.link))
+    cell = (near.indices % num_cells + row // (num_poses * num_parts) * num_cells).flatten()
+    frames = frames.view(-1, 3, 4).index_select(0, box)
+    half_size = boxes.half_size.index_select(0, box % num_boxes)
     middles = surfaces.middles.index_select(0, cell).view(-1, 3, num_patches)
-    middles = torch.baddbmm(shift, turn, middles)
+    middles = torch.baddbmm(frames[..., 3:], frames[..., :3], middles)
     gaps = box_distance_squared(middles, half_size).view(len(row), -1)
     best = gaps.argmin(1) + row[:, 0] * gaps.shape[1]
     pair = best // num_patches
     patch = cell.index_select(0, pair) * num_patches + best % num_patches
-    in_box = turn.index_select(0, pair) @ surfaces.patches.index_select(0, patch)
-    in_box[:, :, :1] += shift.index_select(0, pair)
-    return patch_distance(in_box, half_size.index_select(0, pair)).view(num_envs, num_parts)
+    frames = frames.index_select(0, pair)
+    in_box = frames[..., :3] @ surfaces.patches.index_select(0, patch)
+    in_box[..., :1] += frames[..., 3:]
+    distance = patch_distance(in_box, half_size.index_select(0, pair))
+    return distance.view(num_envs, num_poses, num_parts)
 
 
-def _object_to_boxes(
-    link_poses: Tensor, boxes: HandBoxes, obj_pose: Tensor
-) -> tuple[Tensor, Tensor]:
-    """Turn (num_envs, num_boxes, 3, 3) and shift (..., 3, 1): p_box = turn p_object + shift."""
-    to_link = quat_to_matrix(link_poses[..., 3:]).transpose(-1, -2)
-    shift = to_link @ (obj_pose[:, None, :3] - link_poses[..., :3])[..., None]
-    turn = to_link.flatten(1, 2) @ quat_to_matrix(obj_pose[:, 3:])
-    turn = turn.view_as(to_link).index_select(1, boxes.link)
-    shift = shift.index_select(1, boxes.link) - boxes.position[..., None]
-    to_box = boxes.rotation.transpose(-1, -2)
-    return to_box @ turn, to_box @ shift
+def _object_to_boxes(link_frames: Tensor, boxes: HandBoxes, obj_frames: Tensor) -> Tensor:
+    """(num_envs, num_poses, num_boxes, 3, 4): p_box = turn p_object + shift, the last column."""
+    to_link = link_frames[..., :3].transpose(-1, -2)
+    to_link = torch.cat([to_link, -to_link @ link_frames[..., 3:]], -1)
+    to_box = boxes.from_link[..., :3] @ to_link.index_select(1, boxes.link)
+    to_box[..., 3] += boxes.from_link[..., 3]
+    turn, shift = to_box[..., :3].flatten(1, 2), to_box[..., 3]
+    frames = (turn[:, None] @ obj_frames).view(*obj_frames.shape[:2], -1, 3, 4)
+    frames[..., 3] += shift[:, None]
+    return frames
 
 
 def box_distance_squared(points: Tensor, half_size: Tensor) -> Tensor:
@@ -195,7 +196,7 @@ def patch_distance(patches: Tensor, half_size: Tensor) -> Tensor:
         (n,) [m]
     """
     middle, axes = patches[..., :1], patches[..., 1:]
-    to_box = torch.minimum(torch.maximum(middle, -half_size), half_size) - middle
+    to_box = middle.clamp(-half_size, half_size) - middle
     along = (axes * to_box).sum(1, keepdim=True) / axes.square().sum(1, keepdim=True).clamp(
         min=1e-12
     )

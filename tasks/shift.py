@@ -82,7 +82,7 @@ class ShiftEstimate:
         rows = self._due[step.clamp(max=MAX_EPISODE_STEPS).long()].nonzero()[:, 0]
         if not len(rows):
             return
-        nominal, distances = nominal_pose[rows], imagining(rows, reading.link_poses[rows])
+        nominal, distances = nominal_pose[rows, None], imagining(rows, reading.link_frames[rows])
 
         def expected(offset: Tensor) -> Tensor:
             return distances(displaced(nominal, torch.zeros_like(offset), offset))

@@ -16,7 +16,7 @@ from torch import Tensor
 
 from maniskill_taskgrasp import ENV_ID
 from maniskill_taskgrasp.agents.controllers.palm_motion import PalmResidualController
-from maniskill_taskgrasp.agents.fidelity import ContactSurfaces, in_topology
+from maniskill_taskgrasp.agents.fidelity import ContactSurfaces, asked_of, in_topology
 from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
 from maniskill_taskgrasp.agents.sawyer_ar10.agent import SawyerAR10
@@ -186,7 +186,9 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             self.num_envs, len(self._hand_links), num_actions, self._distance, self.device
         )
         self._facts = KnownFacts(self._rows([p.extents for p in self.placements]))
-        self._roles = rewards.PartRoles.of_topologies(self.device)
+        self._all_roles = rewards.PartRoles.of_topologies(self.device)
+        weights = list(vars(self._weights).values())
+        self._weight_column = torch.tensor(weights, device=self.device)[:, None]
 
     def _rows(self, rows: list[Any]) -> Tensor:
         """One row for each environment."""
@@ -198,6 +200,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         memory, topologies = self._memory, self._draw_topologies(env_idx, options)
         indices = [t.index for t in topologies]
         memory.topology_index[env_idx] = torch.tensor(indices, device=self.device)
+        self._look_topologies_up()
         plans = self._plan(env_idx, topologies, options)
         memory.pregrasp[env_idx] = plans.pregrasp
         self._place_robot(env_idx, plans)
@@ -207,6 +210,11 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         memory.touch[env_idx] = 0.0
         memory.outcome.reset(env_idx, plans.reachable)
         self._reading = None
+
+    def _look_topologies_up(self) -> None:
+        """What stays the same as long as the topologies do."""
+        index = self._memory.topology_index
+        self._asked, self._roles = asked_of(index), self._all_roles.of(index)
 
     def _draw_topologies(self, env_idx: Tensor, options: dict) -> list[Topology]:
         if "topology" in options:
@@ -273,6 +281,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             self.agent.set_controller_state(rows, envs)
         if "task" in state:
             from_rows(self._episode(), state["task"], envs)
+            self._look_topologies_up()
         self._reading = None
 
     def set_state(self, state: Any, env_idx: Tensor | None = None) -> None:
@@ -315,7 +324,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         Privileged: for rewards and teachers, never observed. The object's turn counts as at the
         start, its place as it is now.
         """
-        pushed = self.obj.pose.p[:, :2] - self._memory.start_pos[:, :2]
+        pushed = self.reading.obj_pose[:, :2] - self._memory.start_pos[:, :2]
         return self._memory.true_shift + torch.nn.functional.pad(pushed, (0, 1))
 
     def _palm_shift(self) -> Tensor:
@@ -333,7 +342,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         return self._reading
 
     def _lift(self) -> Tensor:
-        return self.reading.height - self._memory.start_pos[:, 2]
+        return self.reading.obj_pose[:, 2] - self._memory.start_pos[:, 2]
 
     def evaluate(self) -> dict[str, Tensor]:
         reading, lift = self.reading, self._lift()
@@ -343,7 +352,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             "fail": failure > 0,
             "lift": lift,
             "part_forces": reading.forces,
-            "contact_links": reading.local_forces.norm(dim=-1) >= rewards.CONTACT_FORCE,
+            "contact_links": reading.touch >= rewards.CONTACT_FORCE,
             "failure": failure,
             "fidelity": self._fidelity(),
         }
@@ -359,7 +368,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         # The thumb's rotation counts as commanded: its contact bends it back (facts: grasping, 6).
         command = self.agent.controller.controllers["hand"].command
         thumb = command[:, self.agent.thumb_rotation]
-        return in_topology(shares, self._memory.topology_index, thumb, pip)
+        return in_topology(shares, self._asked, thumb, pip)
 
     # Observation
 
@@ -386,14 +395,13 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
 
     def get_reward(self, obs: Any, action: Tensor, info: dict) -> Tensor:
         if self.reward_mode == "paper":
-            forces = self.reading.local_forces.norm(dim=-1)
             count = info["contact_links"].sum(1)
-            return rewards.paper_reward(count, forces.sum(1), info["success"])
+            return rewards.paper_reward(count, self.reading.touch.sum(1), info["success"])
         return super().get_reward(obs=obs, action=action, info=info)
 
     def reward_terms(self, info: dict[str, Tensor]) -> dict[str, Tensor]:
         """Unweighted terms, each (num_envs,) in [0, 1]."""
-        named, opposing, fingers = self._roles.of(self._memory.topology_index)
+        named, opposing, fingers = self._roles
         forces, distances = info["part_forces"], self.reading.distances
         lift = rewards.lift_term(info["lift"], LIFT_HEIGHT)
         return {
@@ -409,8 +417,8 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
     def compute_dense_reward(self, obs: Any, action: Tensor, info: dict) -> Tensor:
         terms = self.reward_terms(info)
         info.update({f"reward/{name}": value for name, value in terms.items()})
-        weights = vars(self._weights)
-        return torch.stack([weights[name] * value for name, value in terms.items()]).sum(0)
+        unweighted = torch.stack([terms[name] for name in vars(self._weights)])
+        return (self._weight_column * unweighted).sum(0)
 
     def compute_normalized_dense_reward(self, obs: Any, action: Tensor, info: dict) -> Tensor:
         return self.compute_dense_reward(obs, action, info) / self._weights.total

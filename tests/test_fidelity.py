@@ -9,6 +9,7 @@ from maniskill_taskgrasp.agents.fidelity import (
     ContactShares,
     ContactSurfaces,
     arc_cosine,
+    asked_of,
     in_topology,
 )
 from maniskill_taskgrasp.agents.hand import PARTS
@@ -32,7 +33,7 @@ def formed(topology, parts, thumb=ABDUCTED, pip=BENT):
     columns = {key: torch.tensor([[row[key] for row in rows]]) for key in rows[0]}
     index = torch.tensor([resolve_topology(topology).index])
     result = in_topology(
-        ContactShares(**columns), index, torch.tensor([thumb]), torch.full((1, 4), pip)
+        ContactShares(**columns), asked_of(index), torch.tensor([thumb]), torch.full((1, 4), pip)
     )
     return bool(result[0])
 
@@ -286,5 +287,7 @@ def test_environments_are_judged_each_by_its_own_topology():
     shares = ContactShares(**{key: column.expand(2, -1) for key, column in columns.items()})
     names = ("precision pad abd 2", "precision pad abd 2-3")
     index = torch.tensor([resolve_topology(name).index for name in names])
-    found = in_topology(shares, index, torch.full((2,), ABDUCTED), torch.full((2, 4), BENT))
+    found = in_topology(
+        shares, asked_of(index), torch.full((2,), ABDUCTED), torch.full((2, 4), BENT)
+    )
     assert found.tolist() == [True, False]

@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 
 import maniskill_taskgrasp  # noqa: F401  (Registers the task.)
 from maniskill_taskgrasp.agents.hand import PARTS
-from maniskill_taskgrasp.agents.rotations import quat_multiply, quat_to_matrix
+from maniskill_taskgrasp.agents.rotations import pose_to_frame, quat_multiply, quat_to_matrix
 from maniskill_taskgrasp.agents.sawyer_ar10.description import PART_PRIMITIVES, SENSED_PRIMITIVES
 from maniskill_taskgrasp.agents.sawyer_ar10.model import Box
 from maniskill_taskgrasp.assets.objects import library
@@ -61,6 +61,12 @@ def boxes_of(sizes):
     return HandBoxes.of(primitives, ["link-" + part for part in PARTS], torch.device("cpu"))
 
 
+def felt(links, boxes, surfaces, obj):
+    """Distances (num_envs, num_parts) for poses of links (num_envs, num_links, 7) and objects."""
+    frames = pose_to_frame(obj)[:, None]
+    return part_distances(pose_to_frame(links), boxes, surfaces, frames)[:, 0]
+
+
 def random_poses(generator, *shape, spread=0.2):
     """(*shape, 7) [m, wxyz]"""
     quat = torch.randn(*shape, 4, generator=generator)
@@ -82,7 +88,7 @@ def test_distance_to_a_ball_is_that_to_its_centre_less_its_radius():
     expected = ((local.abs() - sizes / 2).clamp(min=0).norm(dim=-1) - radius).clamp(min=0)
     assert (expected == 0).any() and (expected > 0.05).any()
     outside = (local.abs() + sizes / 2).norm(dim=-1) > radius  # Not swallowed by the ball.
-    distances = part_distances(links, boxes, surfaces, obj)
+    distances = felt(links, boxes, surfaces, obj)
     torch.testing.assert_close(distances[outside], expected[outside], atol=1e-3, rtol=0)
 
 
@@ -93,7 +99,7 @@ def test_distances_do_not_depend_on_where_the_world_is():
     models = [library.load(name) for name in ("hammer", "mug", "book")]
     surfaces = ObjectSurfaces.of([surface_of(m) for m in models], torch.device("cpu"))
     links, obj = random_poses(generator, 3, 6), random_poses(generator, 3)
-    here = part_distances(links, boxes, surfaces, obj)
+    here = felt(links, boxes, surfaces, obj)
     move = random_poses(generator, 1)[0]
 
     def moved(poses):
@@ -103,13 +109,18 @@ def test_distances_do_not_depend_on_where_the_world_is():
         )
 
     torch.testing.assert_close(
-        part_distances(moved(links), boxes, surfaces, moved(obj)), here, atol=2e-5, rtol=0
+        felt(moved(links), boxes, surfaces, moved(obj)), here, atol=2e-5, rtol=0
     )
     order = torch.tensor([2, 0, 1])
     mixed = ObjectSurfaces.of([surface_of(models[i]) for i in order], torch.device("cpu"))
     torch.testing.assert_close(
-        part_distances(links[order], boxes, mixed, obj[order]), here[order], atol=1e-6, rtol=0
+        felt(links[order], boxes, mixed, obj[order]), here[order], atol=1e-6, rtol=0
     )
+    # Several poses at once, as each by itself.
+    several = torch.stack([obj, moved(obj)], 1)
+    one_by_one = [felt(links, boxes, surfaces, pose) for pose in several.unbind(1)]
+    together = part_distances(pose_to_frame(links), boxes, surfaces, pose_to_frame(several))
+    torch.testing.assert_close(together, torch.stack(one_by_one, 1), atol=1e-6, rtol=0)
 
 
 @pytest.mark.parametrize("name", ["mug", "screwdriver", "book"])

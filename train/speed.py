@@ -172,7 +172,6 @@ def _sections(base: Any, acts: list[torch.Tensor]) -> dict[str, float]:
     for group in groups:
         watch.wrap(group, "advance", "state")
         watch.wrap(group, "run_physics", "physics")
-        watch.wrap(group._contacts, "stepped", "contacts")
         watch.wrap(group._contacts, "table", "contacts")
     if not groups:
         watch.wrap(base.scene, "step", "physics")

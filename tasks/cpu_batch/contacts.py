@@ -23,24 +23,22 @@ class ContactTable:
         self._systems = systems
         self._env_of = env_of
         # Slot 2r counts for row r, slot 2r + 1 against it. Bodies hash by identity.
-        self._pair_slots: dict[Any, dict[Any, int]] = {}
+        self._pair_slots: dict[tuple[Any, Any], int] = {}
         self._body_slots: dict[Any, int] = {}
         self._row_env: list[int] = []
         self._watched = np.zeros(len(systems), dtype=bool)
         self._void = np.zeros(len(systems), dtype=bool)
-        self._found = _Found()
-        self._complete = False  # All that is watched was looked at since the last step.
-        self._asked = self._eager = False
+        # Slots that a contact of two bodies counts for, as they come to touch.
+        self._hits: dict[tuple[Any, Any], tuple[int, ...]] = {}
         self._table: np.ndarray | None = None
 
     def add_pair(self, first: Any, second: Any) -> tuple[int, int]:
         """Row of the impulse between two bodies, and 1 or -1 to make it act on the first."""
-        partners = self._pair_slots.setdefault(first, {})
-        if second not in partners:
+        if (first, second) not in self._pair_slots:
             slot = self._new_slot(first if first in self._env_of else second)
-            partners[second] = slot
-            self._pair_slots.setdefault(second, {})[first] = slot + 1
-        slot = partners[second]
+            self._pair_slots[first, second] = slot
+            self._pair_slots[second, first] = slot + 1
+        slot = self._pair_slots[first, second]
         return slot // 2, 1 - 2 * (slot % 2)
 
     def add_body(self, body: Any) -> tuple[int, int]:
@@ -52,23 +50,14 @@ class ContactTable:
     def _new_slot(self, body: Any) -> int:
         self._row_env.append(self._env_of[body])
         self._watched[self._env_of[body]] = True
-        self._complete = False
+        self._hits.clear()
         self._table = None
         return 2 * (len(self._row_env) - 1)
 
-    def stepping(self) -> None:
-        """A physics step comes: everything known is out of date."""
-        # Who asked after the last step will ask after this one.
-        self._eager, self._asked = self._asked, False
-        self._complete = self._eager
-        self._found = _Found()
+    def stepped(self) -> None:
+        """The environments have been stepped: everything known is out of date."""
         self._table = None
         self._void[:] = False
-
-    def stepped(self, env: int) -> None:
-        """An environment has been stepped: look at its contacts, if anybody is going to ask."""
-        if self._eager and self._watched[env]:
-            self._look(env)
 
     def clear(self, envs: Sequence[int]) -> None:
         """These environments are put into a new state: their contacts are void until a step."""
@@ -78,61 +67,57 @@ class ContactTable:
 
     def table(self) -> np.ndarray:
         """(rows, 3) [Ns] impulses of the last physics step."""
-        self._asked = True
-        if not self._complete:
-            self._found = _Found()
-            for env in np.nonzero(self._watched & ~self._void)[0].tolist():
-                self._look(env)
-            self._complete = True
         if self._table is None:
-            self._table = self._found.sums(len(self._row_env))
-            self._table[self._void[self._row_env]] = 0.0
+            self._table = self._look()
         return self._table
 
-    def _look(self, env: int) -> None:
-        """Find the contacts of an environment that somebody asked about.
+    def _look(self) -> np.ndarray:
+        """Sum the contacts that somebody asked about.
 
-        Runs over all contacts every step, most of which nobody asked about: reject those fast.
+        Runs over all contacts every step, many of which nobody asked about: reject those fast.
         """
-        pair_slots, body_slots, found = self._pair_slots, self._body_slots, self._found
-        for contact in self._systems[env].get_contacts():
-            first, second = contact.bodies
-            partners = pair_slots.get(first)
-            slot = partners.get(second) if partners else None
-            hit: tuple[int, ...] = () if slot is None else (slot,)
-            if body_slots:
-                if (own := body_slots.get(first)) is not None:
-                    hit = (*hit, own)
-                if (own := body_slots.get(second)) is not None:
-                    hit = (*hit, own + 1)
-            if hit and (points := contact.points):
-                found.add(hit, points)
+        known, hits = self._hits, []
+        impulses: list[np.ndarray] = []
+        starts: list[int] = []  # First point of each contact.
+        for env in np.flatnonzero(self._watched & ~self._void).tolist():
+            for contact in self._systems[env].get_contacts():
+                bodies = tuple(contact.bodies)
+                hit = known.get(bodies)
+                if hit is None:
+                    hit = known[bodies] = self._slots_of(*bodies)
+                if hit and (points := contact.points):
+                    starts.append(len(impulses))
+                    impulses += [point.impulse for point in points]
+                    hits.append(hit)
+        return _sums(impulses, starts, hits, len(self._row_env))
+
+    def _slots_of(self, first: Any, second: Any) -> tuple[int, ...]:
+        """Slots that a contact of these bodies counts for."""
+        pair, own = self._pair_slots.get((first, second)), self._body_slots.get(first)
+        other = self._body_slots.get(second)
+        slots = (pair, own, None if other is None else other + 1)
+        return tuple(slot for slot in slots if slot is not None)
 
 
-class _Found:
-    """Contacts that were asked about, after one step."""
+def _sums(
+    impulses: list[np.ndarray], starts: list[int], hits: list[tuple[int, ...]], rows: int
+) -> np.ndarray:
+    """(rows, 3) [Ns] impulses of contacts, those against a row with a minus.
 
-    def __init__(self) -> None:
-        self._impulses: list[np.ndarray] = []
-        self._starts: list[int] = []  # First point of each contact.
-        self._hits: list[tuple[int, ...]] = []  # Slots that each contact counts for.
-
-    def add(self, hit: tuple[int, ...], points: list[Any]) -> None:
-        """Take in one contact."""
-        self._starts.append(len(self._impulses))
-        self._impulses += [point.impulse for point in points]
-        self._hits.append(hit)
-
-    def sums(self, rows: int) -> np.ndarray:
-        """(rows, 3) [Ns] impulses, those against a row with a minus."""
-        table = np.zeros((rows, 3), dtype=np.float32)
-        if not self._hits:
-            return table
-        points = np.concatenate(self._impulses).reshape(-1, 3)
-        contacts = np.add.reduceat(points, self._starts, axis=0)
-        slots = [slot for hit in self._hits for slot in hit]
-        weights = np.repeat(contacts, [len(hit) for hit in self._hits], axis=0)
-        for axis in range(3):
-            signed = np.bincount(slots, weights[:, axis], minlength=2 * rows)
-            table[:, axis] = signed[0::2] - signed[1::2]
+    Args:
+        impulses: (3,) [Ns] of every point.
+        starts: first point of each contact.
+        hits: slots that each contact counts for.
+        rows: of the table.
+    """
+    table = np.zeros((rows, 3), dtype=np.float32)
+    if not hits:
         return table
+    points = np.concatenate(impulses).reshape(-1, 3)
+    contacts = np.add.reduceat(points, starts, axis=0)
+    slots = [slot for hit in hits for slot in hit]
+    weights = np.repeat(contacts, [len(hit) for hit in hits], axis=0)
+    for axis in range(3):
+        signed = np.bincount(slots, weights[:, axis], minlength=2 * rows)
+        table[:, axis] = signed[0::2] - signed[1::2]
+    return table
