@@ -177,11 +177,14 @@ CPU_TASK_GRASP: dict[str, Any] = {
     "gamma": 0.95,
     "gae_lambda": 0.95,
     "bootstrap_at_done": "truncated",
+    # Failed episodes run on: ended ones only start over with an approach, which takes no skill.
+    "partial_reset": False,
 }
 CPU_OTHER: dict[str, Any] = {"num_envs": 1, "num_eval_envs": 1, "num_steps": CPU_ROLLOUT}
 
 PRESETS: dict[str, dict[str, Any]] = {
-    # The paper's learning rate, discount, clipping range and sample budget; 20 updates of 2500.
+    # (With failed episodes ended, a reward that is negative until something is touched teaches to
+    # fail soon; CPU_TASK_GRASP lets them run on.) The paper's learning rate, discount, clipping range and sample budget; 20 updates of 2500.
     "paper": {
         "env_id": TASK_GRASP,
         "obs": "paper",
@@ -195,9 +198,6 @@ PRESETS: dict[str, dict[str, Any]] = {
         "num_envs": 50,
         "num_steps": 50,
         "num_minibatches": 10,
-        # Their reward is negative until something is touched: were failed episodes ended, a policy
-        # would learn to fail soon.
-        "partial_reset": False,
         # Rewards reach 1000; a plain change of unit keeps the value loss in a range Adam likes.
         "reward_scale": 1e-3,
     },
