@@ -9,12 +9,26 @@ import pytest
 
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language import Instruction, parse
-from maniskill_taskgrasp.language.actions import NO_ACTION, READINGS, load_head, mix_readings
+from maniskill_taskgrasp.language.actions import (
+    HAND_OVER,
+    NO_ACTION,
+    READINGS,
+    load_head,
+    mix_readings,
+)
 from maniskill_taskgrasp.language.encoder import DIMENSIONS, EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.lexicon import load_lexicon, matches, parse_phrase
 from maniskill_taskgrasp.language.model import COMPONENTS, load_model
 from maniskill_taskgrasp.language.spelling import correct, slip_distance
-from maniskill_taskgrasp.train.instructions import FRAMES, fill_frame, gerund, participle
+from maniskill_taskgrasp.train.instructions import (
+    fill_frame,
+    fill_idle_frame,
+    fill_situation,
+    fill_transfer,
+    frames,
+    gerund,
+    participle,
+)
 
 
 def test_components_declare_what_they_need_and_give():
@@ -83,7 +97,7 @@ def test_lexicon_covers_all_actions_and_names_known_things():
 def test_head_fits_the_lexicon():
     """The shipped head was trained for these actions and these names."""
     head = load_head()
-    assert head.classes == (*load_knowledge().actions, NO_ACTION)
+    assert head.classes == (*load_knowledge().actions, HAND_OVER, NO_ACTION)
     assert head.names == tuple(sorted(load_lexicon().names))
     assert head.weights.shape == (len(head.classes), DIMENSIONS)
 
@@ -148,7 +162,11 @@ def test_training_sentences_have_english_forms(verb, ing, done):
 def test_every_frame_can_be_filled():
     """No frame asks for a slot that there is not, and none leaves a brace."""
     phrase = load_lexicon().phrases["tighten"][0]
-    for frame in FRAMES:
+    for frame in frames("requests"):
         text = fill_frame(phrase, phrase, random.Random(0), frame)
         assert "{" not in text
         assert re.search("tighten|tightened", text)
+    rng = random.Random(0)
+    for _ in range(len(frames("idle"))):
+        filled = fill_idle_frame(phrase, rng), fill_transfer(rng), fill_situation("it is wet", rng)
+        assert not any("{" in text for text in filled)

@@ -1,19 +1,23 @@
 """Whole instructions filled by code: a phrase of the lexicon in one of many frames of talking.
 
-Each frame is a way in which people ask for something: orders, favours, needs, passives, tools
-handed over for a purpose, sequences, chatter around the request. Slots:
+Each frame (`frames.txt`) is a way in which people talk: orders, favours, needs, passives, tools
+handed over for a purpose, sequences, chatter around the request; asking for an object itself;
+what is said around a situation; talk that asks for nothing. Slots:
 
 {imp}   "tighten the bolt with the wrench"      {ger}   "tightening the bolt with the wrench"
 {np}    "the bolt"                              {done}  "tightened with the wrench"
 {doing} "tightening with the wrench"            {held}  "wrench"
 {it}    "tighten it with the wrench"            {other} another imperative
 {bare}  "tighten the bolt"                      {baring} "tightening the bolt"
+{past}  "tightened the bolt with the wrench"    {doneall} the same as a participle
 """
 
 from __future__ import annotations
 
 import random
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, Phrase, load_lexicon
@@ -27,232 +31,21 @@ TARGETS = word_list("targets")
 """Things that tools are used on; the table's own objects are what is held."""
 USUAL_TOOL = 0.7  # Share of sentences whose object people really used for the action.
 SYNONYM = 0.4  # Share of objects that are called by another name.
-
-FRAMES = tuple(
-    """{imp}
-{imp}
-{imp}
-{imp} please
-please {imp}
-can you {imp}?
-could you {imp}?
-could you please {imp}
-would you {imp} for me?
-will you {imp}, please?
-would you mind {ger}?
-do you mind {ger} for me?
-i need you to {imp}
-i want you to {imp}
-i'd like you to {imp}
-i would appreciate it if you could {imp}
-it would be nice if you {imp}
-it would be great if someone could {imp}
-do me a favor and {imp}
-be a dear and {imp}
-would you be so kind as to {imp}
-i was wondering if you could {imp}
-is there any chance you could {imp}?
-can i get you to {imp}?
-how about you {imp}?
-how about {ger}?
-why don't you {imp}?
-let's {imp}
-let us {imp} now
-go ahead and {imp}
-go {imp}
-try to {imp}
-try {ger}
-start {ger}
-make sure you {imp}
-don't forget to {imp}
-remember to {imp}
-you should {imp}
-you have to {imp}
-we need to {imp}
-we have to {imp} before lunch
-i need to {imp}
-i want to {imp}
-i have to {imp}
-i'm going to {imp}
-i would like to {imp}
-help me {imp}
-help me with {ger}
-it's time to {imp}
-your job is to {imp}
-the next step is to {imp}
-now {imp}
-ok now {imp}
-first {imp}
-hey, {imp}
-hey robot, {imp}
-listen, {imp}
-quick, {imp}!
-carefully {imp}
-{imp} carefully
-{imp} gently
-{imp} right now
-{imp}, will you?
-{imp}, would you?
-{imp} when you have a minute
-{imp} if you don't mind
-{imp} before it gets dark
-{imp} so that we can go home
-i'm busy, so {imp}
-my hands are full, {imp}
-someone should {imp}
-somebody has to {imp}
-can someone {imp}?
-who can {imp}?
-are you able to {imp}?
-do you think you could {imp}?
-could i ask you to {imp}?
-sorry to bother you, but could you {imp}
-ugh, just {imp}
-yo can u {imp}
-um, could you, like, {imp}
-well, i guess you could {imp}
-so basically i want you to {imp}
-{np} needs {doing}
-{np} needs to be {done}
-{np} has to be {done}
-{np} must be {done}
-{np} should be {done}
-{np} ought to be {done}
-{np} wants {doing}
-{np} is to be {done}
-{np} still has to be {done}
-{np} hasn't been {done} yet
-can {np} be {done}?
-could {np} be {done}?
-i need {np} {done}
-i want {np} {done}
-i'd like {np} {done}
-have {np} {done}
-get {np} {done}
-i'd like to have {np} {done}
-you see {np}? {it}
-look at {np}, {it}
-here is {np}, {it}
-there's {np}, {it}
-{np} is over there. {it}
-about {np}: {it}
-take {np} and {it}
-hand me the {held} so i can {bare}
-hand me the {held}, i need to {bare}
-pass me the {held} so that i can {bare}
-give me the {held}, i have to {bare}
-give me the {held} to {bare}
-bring me the {held}, i want to {bare}
-bring the {held} for {baring}
-get the {held} and {bare}
-grab the {held} and {bare}
-grab a {held} to {bare}
-take the {held} and {bare}
-take the {held} to {bare}
-pick up the {held} and {bare}
-use the {held} to {bare}
-use the {held} for {baring}
-use a {held} and {bare}
-i need the {held} to {bare}
-i need the {held} for {baring}
-i need a {held}, i'm about to {bare}
-i need to {bare}, pass me the {held}
-i have to {bare}, where is the {held}?
-i want to {bare}, can i have the {held}?
-i'm {baring}, hand me the {held}
-we are going to {bare}, fetch the {held}
-with the {held}, {bare}
-using the {held}, {bare}
-{bare} by means of the {held}
-{bare} using a {held}
-find me something to {bare} with
-i need something to {bare}
-pass me something for {baring}
-{imp} and then {other}
-{imp}, then {other}
-first {imp}, then {other}
-{imp} and {other}
-{imp}. after that, {other}
-before you {other}, {imp}
-after {ger}, {other}
-once you have {doneall}, {other}
-don't {other}, {imp}
-don't {other}, just {imp}
-instead of {otherger}, {imp}
-{imp}, but don't {other}
-{imp} without {otherger}
-no, don't {other}. {imp} instead""".splitlines()
-)
+TERSE = 0.08  # Share of requests without articles, as notes and learners of English have them.
 
 
-IDLE_FRAMES = tuple(
-    """i bought a new {name} yesterday
-my sister loves her {name}
-the {name} was invented long ago
-he {past} last week
-they {past} yesterday
-she {past} all day
-my father always {past} when i was young
-i {past} this morning, it was fun
-we were {ger} when it started to rain
-i am {ger} already
-i dreamt about {ger}
-{ger} is boring
-{ger} is bad for your back
-what is a {name}?
-what does a {name} do?
-what is the best {name} for beginners?
-how much does a {name} cost?
-how many {name}s are there in the world?
-where can i buy a {name}?
-who invented the {name}?
-why do people {imp}?
-when did you {imp}?
-how often do you {imp}?
-do you like my {name}?
-do you know how to {imp}?
-have you ever seen a {name}?
-did you {imp}?
-is the {name} expensive?
-tell me about the history of the {name}
-tell me a story about a {name}
-explain how people {imp}
-describe the {name}
-write a poem about a {name}
-translate {name} into french
-my favourite thing is the {name}
-the {name} is blue
-the {name} costs ten dollars
-{name}s are made in china
-there was a {name} in the movie
-the {name} in this picture looks old
-a very heavy {name}
-nothing beats a good {name}
-i think the {name} is ugly
-i have three {name}s at home
-the {name} broke last year
-never {imp}
-do not {imp}
-don't {imp} please
-you must not {imp}
-please stop {ger}
-i don't want you to {imp}
-{verb} {topic}
-please {verb} {topic}
-can you {verb} {topic}?
-what do you think of {topic}?
-tell me about {topic}
-i love {topic}
-{topic} is great
-who knows {topic}?
-i am worried about {topic}
-how do i {verb} {topic}?
-what happened to {topic}?
-let's talk about {topic}
-we should {verb} {topic}
-my friend will {verb} {topic}""".splitlines()
-)
-"""Talk that asks the hand for nothing: tales, questions, opinions, bans, other people's jobs."""
+@cache
+def frames(kind: str) -> tuple[str, ...]:
+    """Frames of a kind: "requests", "transfers", "situations", "idle" or (no slots) "chatter"."""
+    sections: dict[str, list[str]] = {}
+    for line in Path(__file__).with_name("frames.txt").read_text("utf-8").splitlines():
+        if line.startswith("["):
+            lines = sections.setdefault(line.strip("[]"), [])
+        else:
+            lines.append(line)
+    return tuple(sections[kind])
+
+
 OFF_TOPIC_VERBS = word_list("off_topic_verbs")
 OFF_TOPIC_NOUNS = word_list("off_topic_nouns")
 
@@ -341,14 +134,22 @@ def fill_frame(phrase: Phrase, other: Phrase, rng: random.Random, frame: str | N
         phrase: what is asked for.
         other: what a sequence asks for afterwards, or what is forbidden.
         rng: source of the choices.
-        frame: one of `FRAMES`; drawn where None.
+        frame: one of those of "requests"; drawn where None.
     """
     words, more = choose_words(phrase, rng), choose_words(other, rng)
-    frame = rng.choice(FRAMES) if frame is None else frame
+    frame = rng.choice(frames("requests")) if frame is None else frame
+    text = _filled(frame, words, more)
+    if rng.random() < TERSE:
+        text = " ".join(w for w in text.split() if w not in {"the", "a", "an", "my", "this"})
+    return text
+
+
+def _filled(frame: str, words: Words, more: Words) -> str:
     doing, done = gerund(words.verb), participle(words.verb)
     return frame.format(
         imp=words.told(words.verb),
         ger=words.told(doing),
+        past=words.told(past(words.verb)),
         bare=words.told(words.verb, tool=False),
         baring=words.told(doing, tool=False),
         it=words.told(words.verb, np="it"),
@@ -357,6 +158,7 @@ def fill_frame(phrase: Phrase, other: Phrase, rng: random.Random, frame: str | N
         doneall=words.told(done),
         np=words.np,
         held=words.held,
+        name=words.held,
         other=more.told(more.verb, tool=False),
         otherger=more.told(gerund(more.verb), tool=False),
     )
@@ -370,11 +172,19 @@ def fill_idle_frame(phrase: Phrase, rng: random.Random) -> str:
         rng: source of the choices.
     """
     words = choose_words(phrase, rng)
-    return rng.choice(IDLE_FRAMES).format(
-        name=_call(words.held, rng),
-        imp=words.told(words.verb),
-        ger=words.told(gerund(words.verb)),
-        past=words.told(past(words.verb)),
-        verb=rng.choice(OFF_TOPIC_VERBS),
-        topic=rng.choice(OFF_TOPIC_NOUNS),
+    frame = rng.choice(frames("idle")).replace("{verb}", rng.choice(OFF_TOPIC_VERBS))
+    return _filled(frame.replace("{topic}", rng.choice(OFF_TOPIC_NOUNS)), words, words)
+
+
+def fill_transfer(rng: random.Random) -> str:
+    """One request for an object itself."""
+    names = sorted(load_knowledge().objects)
+    held, other = (_call(rng.choice(names), rng) for _ in range(2))
+    return rng.choice(frames("transfers")).format(
+        held=held, other=other, place=rng.choice(["table", "shelf", "bench", "floor", "drawer"])
     )
+
+
+def fill_situation(said: str, rng: random.Random) -> str:
+    """One way of telling a situation that asks for an action without naming it."""
+    return rng.choice(frames("situations")).format(said=said)

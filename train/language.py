@@ -2,9 +2,11 @@
 
 python train/language.py
 
-Every sentence is filled from `assets/knowledge.json` and the front end's own lexicon; no sentence
-of the evaluation set is read. The result is one npz file: the head (74 actions and "no action of
-the table") and the vectors of the object names. Same seed, same file.
+Every sentence of the head is filled from `assets/knowledge.json` and the front end's own lexicon.
+How sure it must be where the grammar finds no request (`language/meaning.py`) is learned on the
+dev instructions; no other set is read. The result is one npz file: the head (74 actions, "an
+object to be handed over", "no action of the table"), that decision, and the vectors of the object
+names and situations. Same seed, same file.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from __future__ import annotations
 import json
 import random
 import tempfile
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -20,12 +23,23 @@ import torch
 import tyro
 
 from maniskill_taskgrasp.knowledge import load_knowledge
-from maniskill_taskgrasp.language.actions import NO_ACTION
+from maniskill_taskgrasp.language.actions import HAND_OVER, NO_ACTION
 from maniskill_taskgrasp.language.encoder import load_encoder
 from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, Phrase, load_lexicon
+from maniskill_taskgrasp.language.meaning import meanings_of
 from maniskill_taskgrasp.language.objects import PHONING
+from maniskill_taskgrasp.language.situations import load_situations
 from maniskill_taskgrasp.language.verbs import base_of
-from maniskill_taskgrasp.train.instructions import PEOPLE, TARGETS, fill_frame, fill_idle_frame
+from maniskill_taskgrasp.train.instructions import (
+    PEOPLE,
+    TARGETS,
+    fill_frame,
+    fill_idle_frame,
+    fill_situation,
+    fill_transfer,
+    frames,
+)
+from maniskill_taskgrasp.train.language_decision import dev_features, dev_texts, with_bias
 
 DEFAULT_OUT = Path(__file__).resolve().parent.parent / "assets" / "checkpoints" / "language.npz"
 
@@ -36,12 +50,16 @@ class LanguageConfig:
 
     out: Path = DEFAULT_OUT
     """Where to write the npz file."""
-    clauses: int = 2
+    clauses: int = 1
     """Bare imperatives made of each phrase of the lexicon."""
     framed: int = 2
     """Whole instructions made of each (`train/instructions.py`)."""
-    idle: int = 2000
-    """Sentences of the class "no action of the table"."""
+    idle: int = 4000
+    """Filled sentences of the class "no action of the table"."""
+    transfers: int = 1500
+    """Sentences of the class "an object to be handed over"."""
+    told: int = 3
+    """Sentences made of each situation."""
     weight_decay: float = 1e-5
     """L2 penalty on the head's weights."""
     steps: int = 60
@@ -91,23 +109,43 @@ def fill(phrase: Phrase, rng: random.Random) -> str:
 
 def make_sentences(config: LanguageConfig) -> tuple[list[str], list[str]]:
     """Sentences and their actions, deduplicated in order."""
-    pairs: dict[tuple[str, str], None] = {}
     phrases = [phrase for found in load_lexicon().phrases.values() for phrase in found]
+    rng = random.Random(config.seed)
+    pairs: dict[tuple[str, str], None] = {}
+    for pair in (
+        *_phrase_sentences(phrases, config),
+        *_table_sentences(),
+        *_situation_sentences(config, rng),
+        *((fill_transfer(rng), HAND_OVER) for _ in range(config.transfers)),
+        *((text, NO_ACTION) for text in frames("chatter")),
+        *((fill_idle_frame(rng.choice(phrases), rng), NO_ACTION) for _ in range(config.idle)),
+    ):
+        pairs[pair] = None
+    return [text for text, _ in pairs], [action for _, action in pairs]
+
+
+def _phrase_sentences(phrases: list[Phrase], config: LanguageConfig) -> Iterator[tuple[str, str]]:
     for phrase in phrases:
         rng = random.Random(f"{config.seed} {phrase.action} {phrase.text} {sorted(phrase.nouns)}")
         for _ in range(config.clauses):
-            pairs[fill(phrase, rng), phrase.action] = None
+            yield fill(phrase, rng), phrase.action
         for _ in range(config.framed):
-            pairs[fill_frame(phrase, rng.choice(phrases), rng), phrase.action] = None
+            yield fill_frame(phrase, rng.choice(phrases), rng), phrase.action
+
+
+def _table_sentences() -> Iterator[tuple[str, str]]:
     for action in load_knowledge().actions:
         for text in annotator_phrases(action):
-            pairs[text, action] = None
+            yield text, action
             for name in objects_of(action)[:4]:
-                pairs[f"{text} with the {name}", action] = None
-    rng = random.Random(config.seed)
-    for _ in range(config.idle):
-        pairs[fill_idle_frame(rng.choice(phrases), rng), NO_ACTION] = None
-    return [text for text, _ in pairs], [action for _, action in pairs]
+                yield f"{text} with the {name}", action
+
+
+def _situation_sentences(config: LanguageConfig, rng: random.Random) -> Iterator[tuple[str, str]]:
+    for situation in load_situations():
+        yield situation.said, situation.action
+        for _ in range(config.told):
+            yield fill_situation(situation.said, rng), situation.action
 
 
 def fit_head(
@@ -147,6 +185,27 @@ def fit_head(
     return weights.detach().numpy(), bias.detach().numpy()
 
 
+def fit_decision(
+    weights: np.ndarray, bias: np.ndarray, classes: list[str], config: LanguageConfig
+) -> tuple[np.ndarray, float]:
+    """Weights of `meaning.features` with their bias, and the share of dev requests they pass.
+
+    Args:
+        weights: (classes, d) of the head.
+        bias: (classes,) of it.
+        classes: their names.
+        config: penalty and iterations.
+    """
+    texts, asked = dev_texts()
+    vectors, situations = encode(texts), encode([s.said for s in load_situations()])
+    meanings = meanings_of(vectors @ weights.T + bias, tuple(classes), vectors @ situations.T)
+    given = dev_features(texts, meanings)
+    two, _ = fit_head(given, asked.astype(np.int64), 2, config)
+    decision = with_bias(two[1] - two[0], given, asked)
+    passed = given[asked] @ decision[:-1] + decision[-1] > 0
+    return decision, float(passed.mean())
+
+
 def encode(texts: list[str]) -> np.ndarray:
     """(n, d) vectors, in batches of similar length."""
     encoder = load_encoder()
@@ -176,10 +235,11 @@ def train(config: LanguageConfig) -> dict[str, object]:
     """Make the sentences, fit the head, write the file; returns what the card states."""
     torch.set_num_threads(1)
     texts, names = make_sentences(config)
-    classes = [*load_knowledge().actions, NO_ACTION]
+    classes = [*load_knowledge().actions, HAND_OVER, NO_ACTION]
     labels = np.array([classes.index(name) for name in names])
     vectors = encode(texts)
     weights, bias = fit_head(vectors, labels, len(classes), config)
+    decision, passed = fit_decision(weights, bias, classes, config)
     fitted = float(((vectors @ weights.T + bias).argmax(1) == labels).mean())
     object_names = sorted(load_lexicon().names)
     save_atomically(
@@ -188,14 +248,17 @@ def train(config: LanguageConfig) -> dict[str, object]:
             "weights": weights.astype(np.float16),
             "bias": bias.astype(np.float32),
             "classes": np.array(classes),
+            "decision": decision,
             "names": np.array(object_names),
             "name_vectors": quantised(encode(object_names)),
+            "situation_vectors": quantised(encode([s.said for s in load_situations()])),
         },
     )
     return {
         "sentences": len(texts),
         "classes": len(classes),
         "fitted_top1": round(fitted, 3),
+        "dev_requests_passed": round(passed, 3),
         "config": {k: str(v) for k, v in asdict(config).items() if k != "out"},
     }
 

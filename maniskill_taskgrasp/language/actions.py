@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 NO_ACTION = "no action of the table"
 """The head's class for everything that is none of the 74 actions."""
+HAND_OVER = "an object to be handed over"
+"""Its class for transfers that name no use."""
 PHRASE_BONUS = 6.0  # Log-odds that the most specific matching phrase adds to its action.
 PARTICULAR_BONUS = 8.0  # The same for a phrase of more than a verb: "put down".
 RANK_DISCOUNT = 1.5  # Taken off that bonus for the last phrase of an action's list.
@@ -51,6 +53,10 @@ class Head:
     """Names and synonyms of objects."""
     name_vectors: np.ndarray
     """(names, d), unit length."""
+    situation_vectors: np.ndarray
+    """(situations, d), unit length, in the order of `situations.load_situations`."""
+    decision: np.ndarray
+    """(features + 1,) weights of `meaning.features`, and a bias: is it a request?"""
 
 
 @dataclass(frozen=True)
@@ -72,14 +78,21 @@ def load_head() -> Head:
     """The trained head (`train/language.py`)."""
     with as_file(files("maniskill_taskgrasp.assets") / "checkpoints" / "language.npz") as path:
         data = np.load(path)
-        vectors = data["name_vectors"].astype(np.float32)
         return Head(
             weights=data["weights"].astype(np.float32),
             bias=data["bias"],
             classes=tuple(data["classes"].tolist()),
             names=tuple(data["names"].tolist()),
-            name_vectors=vectors / np.linalg.norm(vectors, axis=1, keepdims=True),
+            name_vectors=_unit(data["name_vectors"]),
+            situation_vectors=_unit(data["situation_vectors"]),
+            decision=data["decision"],
         )
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    """(n, d) int8 rows as floats of length 1."""
+    rows = vectors.astype(np.float32)
+    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
 
 
 def matching_phrases(
@@ -200,7 +213,7 @@ def score_actions(
     """
     found = matching_phrases(clause, referents)
     bonus = phrase_bonus(found)
-    classes = (*load_knowledge().actions, NO_ACTION)
+    classes = (*load_knowledge().actions, HAND_OVER, NO_ACTION)
     whole = None
     try:
         other = said not in ("", clause.text) and len(said) <= LONGEST_SAID
@@ -221,7 +234,8 @@ def score_actions(
             "objects": _shares(_object_counts(clause), classes),
         }
     )
-    order = [i for i in np.argsort(-probabilities) if classes[i] != NO_ACTION]
+    known = load_knowledge().actions
+    order = [i for i in np.argsort(-probabilities) if classes[i] in known]
     ranked = tuple((classes[i], float(probabilities[i])) for i in order)
     particular = any(specificity > 1 for specificity, _ in found.values())
     return ActionScores(ranked, no_action, bool(found), particular)

@@ -11,11 +11,18 @@ from maniskill_taskgrasp.language.lexicon import (
     load_lexicon,
     matches,
 )
+from maniskill_taskgrasp.language.lightverbs import (
+    INDEFINITE,
+    NEEDING,
+    PERSONAL,
+    RECEIVERS,
+    light_noun,
+    needed_noun,
+)
 from maniskill_taskgrasp.language.mentions import BEFORE_NOUN
 from maniskill_taskgrasp.language.model import import_spacy
 from maniskill_taskgrasp.language.moods import (
     CARRIERS,
-    SELF,
     Mood,
     is_framed,
     is_negated,
@@ -37,18 +44,15 @@ if TYPE_CHECKING:
 
     from maniskill_taskgrasp.language.mentions import Mention
 
-RECEIVERS = word_set("receivers")
 NEEDY = word_set("needy")
 """Carriers that ask for a transfer when a noun follows: "I need the pliers"."""
-NEEDING = word_set("needing")
-"""Verbs by which a thing asks for treatment: "the rod needs a wipe"."""
+WISHED = frozenset(["have", "like", "love"])
+"""Those that ask only after "would" or the like."""
 PREVERBAL = word_set("preverbal")
-INDEFINITE = word_set("indefinite")
 RECEIVED_ONLY = word_set("received_only")
 """Verbs that are transfers only with a receiver or a direction ("slide me the cup")."""
 RESULTS = word_map("results")
 """States that a thing is brought into, with their actions: "push it shut"."""
-PERSONAL = SELF | RECEIVERS | frozenset(["you", "he", "she", "they", "who"])
 
 
 @dataclass(frozen=True)
@@ -130,66 +134,6 @@ def _start(token: Token, floor: int) -> int:
     return min([token.i, *lefts])
 
 
-def _is_listed(light: str, noun: str, base: str) -> bool:
-    """Whether the lexicon means something else by verb and noun: "take a reading" measures."""
-    phrases = load_lexicon().phrases
-    pair = {p.action for p in phrases.get(light, ()) if noun in p.nouns}
-    alone = {p.action for p in phrases.get(base, ()) if p.specificity == 1}
-    return bool(pair) and not pair & alone
-
-
-def _light_noun(doc: Doc, verb: int, high: int) -> int | None:
-    """Token of the noun that carries the meaning of a light verb, None where it has its own.
-
-    A noun that may be an object ("a brush") is meant as its verb only where something else is
-    treated with it ("give the floor a brush"), never where a person receives it.
-    """
-    receiver = verb + 1 < high and doc[verb + 1].lower_ in RECEIVERS
-    named = {i for m in doc._.mentions for i in range(m.start, m.end)}
-    direct = verb + 1 < high and doc[verb + 1].lower_ in INDEFINITE
-    giving = doc[verb].lemma_ in {"give", "do"} and not receiver and not direct
-    light = doc[verb].lemma_
-    doing = light in {"do", "perform", "take", "make"}
-    for at in range(verb + 1, high):
-        token = doc[at]
-        if token.dep_ == "prep" and token.lower_ not in {"of"}:
-            return None
-        base = base_of(token.lower_)
-        if token.pos_ not in {"NOUN", "VERB"} or base is None or base in LIGHT_VERBS:
-            continue
-        if _is_listed(light, token.lower_, base):
-            return None
-        between = doc[verb + 1 : at]
-        articles = [t.lower_ for t in between if t.pos_ in {"DET", "PRON"}]
-        indefinite = bool(articles) and articles[-1] in INDEFINITE
-        if at in named:
-            if giving and indefinite:
-                return at
-            continue
-        bare = not any(t.pos_ == "DET" for t in between) and token.dep_ == "dobj"
-        deverbal = doing and token.lower_.endswith(("ing", "ment", "ion"))
-        if deverbal or indefinite or bare:
-            return at
-    return None
-
-
-def _needed_noun(token: Token) -> int | None:
-    """Token of the treatment that a thing needs: "needs a wipe", "could do with a clean"."""
-    if token.lemma_ not in NEEDING:
-        return None
-    subject = subject_of(token)
-    if subject is None or subject.lower_ in PERSONAL:
-        return None
-    if token.i + 1 < len(token.doc) and token.nbor().lower_.endswith("ing"):
-        return token.i + 1 if base_of(token.nbor().lower_) else None
-    for child in token.subtree:
-        treated = child.dep_ in {"dobj", "pobj"} and child.i > token.i
-        article = [c.lower_ for c in child.children if c.dep_ == "det"]
-        if treated and article[:1] in (["a"], ["an"], ["some"]) and base_of(child.lower_):
-            return child.i
-    return None
-
-
 def _is_transfer(doc: Doc, token: Token, base: str, clause: Clause) -> bool:
     """Whether the verb asks for the object itself, and no phrase gives it another meaning."""
     verb = token.i
@@ -197,7 +141,8 @@ def _is_transfer(doc: Doc, token: Token, base: str, clause: Clause) -> bool:
         subject = subject_of(token)
         person = subject is None or subject.lower_ in PERSONAL
         wanted = clause.role("target") is not None and person
-        return wanted and (base != "have" or obligation(token) or doc[verb - 1].lower_ == "me")
+        plain = base not in WISHED or obligation(token) or doc[verb - 1].lower_ == "me"
+        return wanted and plain
     if base not in TRANSFER_VERBS | {"throw"}:
         return False
     receiver = verb + 1 < len(doc) and doc[verb + 1].lower_ in RECEIVERS
@@ -226,7 +171,7 @@ def build_clauses(doc: Doc) -> tuple[Clause, ...]:
     for k, (token, base) in enumerate(verbs):
         if token.i == needed:
             continue  # "Needs folding" is one clause.
-        needed = _needed_noun(token) or -1
+        needed = needed_noun(token) or -1
         behind = k + 1 + (k + 1 < len(verbs) and verbs[k + 1][0].i == needed)
         high = starts[behind] if behind < len(verbs) else len(doc)
         clause = _build(doc, token, base, max(high, token.i + 1))
@@ -299,7 +244,7 @@ def _acted_on(token: Token) -> list[Token]:
 
 def _build(doc: Doc, token: Token, base: str, high: int) -> Clause | None:
     """The clause of one verb, None where it only carries another."""
-    needed = _needed_noun(token)
+    needed = needed_noun(token)
     if needed is not None:
         told = _acted_on(token)
         low = min((t.i for t in told), default=token.i)
@@ -312,7 +257,7 @@ def _build(doc: Doc, token: Token, base: str, high: int) -> Clause | None:
     ):
         return None  # "Get this spill cleaned up" asks for the cleaning.
     if base in LIGHT_VERBS:
-        noun = _light_noun(doc, token.i, high)
+        noun = light_noun(doc, token.i, high)
         if noun is not None:
             told = [t for t in doc[token.i + 1 : noun] if t.lower_ not in INDEFINITE]
             meant = base_of(doc[noun].lower_) or base
@@ -322,7 +267,7 @@ def _build(doc: Doc, token: Token, base: str, high: int) -> Clause | None:
     clause = _finish(doc, token, base, token.i, low, high, told)
     if not _is_transfer(doc, token, base, clause):
         return clause
-    asks = clause.mood == "statement" and base in NEEDY and base != "have"
+    asks = clause.mood == "statement" and base in NEEDY - WISHED
     return replace(clause, transfer=True, mood="request" if asks else clause.mood)
 
 

@@ -24,6 +24,7 @@ ADDRESSEE = word_set("addressee")
 SUBJECTS = word_set("subjects")
 CHAIN = word_set("chain")
 LONGEST_CHAIN = 6  # Steps up the tree; deeper nesting is no instruction.
+SOMETHING = word_set("something")
 SAYING = frozenset(["say", "tell", "mean"])
 UNASKED_MARKS = word_set("unasked_marks")
 """Conjunctions whose clause is told, not asked: "till it shines"."""
@@ -106,7 +107,8 @@ def _is_told(verb: Token) -> bool:
     marks = {c.lower_ for c in verb.children if c.dep_ in {"mark", "advmod"}}
     infinitive = any(c.lower_ == "to" for c in verb.children)
     if verb.dep_ == "relcl" and not infinitive:
-        return not (is_passive(verb) and obligation(verb))
+        wanted = verb.head.lower_ in SOMETHING or is_passive(verb)
+        return not (wanted and obligation(verb))  # "Something I can cut it with" says what for.
     perfect = any(c.lemma_ == "have" and c.dep_ == "aux" for c in verb.children)
     if perfect and not marks & {"once", "after", "when"}:
         return True

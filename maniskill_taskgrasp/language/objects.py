@@ -11,6 +11,7 @@ from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.actions import GENERIC_ACTIONS, load_head
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, TOOL_ACTIONS, load_lexicon
+from maniskill_taskgrasp.language.situations import load_situations
 from maniskill_taskgrasp.language.spelling import respell_name
 from maniskill_taskgrasp.language.words import word_map, word_set
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 NEAREST_MINIMUM = 0.72  # Cosine below which a name is not the object that was meant.
 USED_MINIMUM = 0.4  # Cosine from which an unknown thing is like what people used for the action.
 NAMED_AFTER_MINIMUM = 0.75  # The same for a verb with its target, for a tool that nobody named.
+SITUATION_MINIMUM = 0.4  # Cosine from which a request is like a known situation.
 SLIP_SCORE = 0.8  # What one slip leaves of a name's certainty.
 CANDIDATES = 5  # Alternatives that an answer lists.
 CONTENT_ACTIONS = word_set("content_actions")
@@ -187,6 +189,25 @@ def like_what_was_used(text: str, action: str) -> Held | None:
     return Held(name, score, nearest(text), note, guessed=True)
 
 
+def from_situation(task: Task, action: str) -> Held | None:
+    """The object that the likest known situation takes: flashlight for "it's dark in here"."""
+    if not task.meant or task.told is None:
+        return None
+    try:
+        vector = load_encoder().encode([task.told.said])[0]
+    except EncoderMissingError:
+        return None
+    likeness = load_head().situation_vectors @ vector
+    known = load_situations()
+    rows = [i for i in np.argsort(-likeness) if known[i].action == action]
+    if not rows or likeness[rows[0]] < SITUATION_MINIMUM:
+        return None
+    name, score = known[rows[0]].object, float(likeness[rows[0]])
+    note = f"no object was named: took {name!r}, as for {known[rows[0]].said!r}"
+    others = dict.fromkeys(known[i].object for i in rows[1:] if known[i].object != name)
+    return Held(name, score, tuple((n, score) for n in others)[:CANDIDATES], note, guessed=True)
+
+
 def named_after(clause: Clause) -> Held | None:
     """The object whose name tells its purpose: "brush your teeth" is the toothbrush's job."""
     target = clause.role("target")
@@ -237,7 +258,8 @@ def _from_acted_on(mention: Mention, task: Task, action: str) -> Held:
     held = from_mention(mention, action)
     spilled = mention.words in CONTENTS and action in TOOL_ACTIONS - POURED_ACTIONS
     if held.name is not None and (spilled or is_worked_on(held.name, action)):
-        return _spoken_of(task, action) or from_data(action, ((held.name, held.score),))
+        spoken = _spoken_of(task, action) or from_situation(task, action)
+        return spoken or from_data(action, ((held.name, held.score),))
     return held
 
 
@@ -261,6 +283,9 @@ def _instrument(task: Task, clause: Clause, action: str) -> Held | None:
         guessed = tool.mention is None and not tool.pronoun and action not in TOOL_ACTIONS
         if held is not None and held.name is not None and not (guessed and clause.role("target")):
             return held
+    sought, target = task.source.sought, clause.role("target")
+    if sought is not None and (target is None or not target.mention or clause.mood == "wish"):
+        return from_mention(sought)  # "I want to rinse the plate, where is the hose?"
     place = clause.role("place")
     if place is not None and place.mention is not None:
         name = place.mention.objects[0][0]
@@ -310,6 +335,12 @@ def _spoken_of(task: Task, action: str) -> Held | None:
     return None
 
 
+def _instead(task: Task, action: str, unknown: Held) -> Held:
+    """What to hold where the target is no object of the data: a like thing that is."""
+    like = like_what_was_used(unknown.wanted or "", action)
+    return like or from_situation(task, action) or unknown
+
+
 def choose_object(task: Task, action: str | None) -> Held:
     """The object of a task.
 
@@ -333,11 +364,13 @@ def choose_object(task: Task, action: str | None) -> Held:
         return held
     target = clause.role("target")
     if action in TOOL_ACTIONS:
-        spoken = _spoken_of(task, action) or named_after(clause)
-        return spoken or tool_in_verb(clause, action) or from_data(action)
+        spoken = _spoken_of(task, action) or named_after(clause) or tool_in_verb(clause, action)
+        return spoken or from_situation(task, action) or from_data(action)
     if target is not None and not target.pronoun:
         held = named_after(clause) or from_words(target.text)
         found = held.name is not None
-        return held if found else like_what_was_used(target.text, action) or held
+        return held if found else _instead(task, action, held)
     before = antecedent(task) if target is None else None
-    return from_mention(before) if before is not None else Held(None, 0.0)
+    if before is not None:
+        return from_mention(before)
+    return from_situation(task, action) or Held(None, 0.0)

@@ -39,6 +39,8 @@ class Told:
     """Objects named after it, for a pronoun that runs ahead of its noun."""
     said: str = ""
     """The whole request around it."""
+    sought: Mention | None = None
+    """The object that a question looks for: "where is the hose?"."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,8 @@ class Task:
     """The transfer or "use" that named `held`."""
     anything: bool = False
     """The transfer asks for "something", so that the data choose."""
+    meant: bool = False
+    """The meaning of the whole request shows that it is one (`meaning`)."""
 
     @property
     def transfer(self) -> bool:
@@ -97,6 +101,8 @@ def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
         meant = [m for m in doc._.mentions if not ruled_out(segment, doc, m)]
         before += sorted(meant, key=lambda m: not is_place(doc, m))
     told = []
+    asked_for = [d for s, d in zip(segments, docs, strict=True) if s.text.startswith("where ")]
+    sought = next((m for doc in asked_for for m in doc._.mentions), None)
     for k in order_segments(segments):
         if segments[k].asking:
             continue
@@ -105,7 +111,7 @@ def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
                 continue  # "Never mind folding it".
             own = [m for m in docs[k]._.mentions if m.end <= clause.at]
             later = [m for doc in docs[k + 1 :] for m in doc._.mentions]
-            told.append(Told(clause, (*seen[k], *own), tuple(later), segments[k].text))
+            told.append(Told(clause, (*seen[k], *own), tuple(later), segments[k].text, sought))
     return told
 
 

@@ -88,7 +88,9 @@ def _is_request_start(words: list[str], at: int) -> bool:
     if at >= len(words) or words[at].strip(",") not in verbs:
         return False
     following = words[at + 1].strip(",") if at + 1 < len(words) else ""
-    return following in AFTER_VERB
+    names = load_lexicon().names
+    named = following in names and words[at].strip(",") not in names
+    return following in AFTER_VERB or named
 
 
 def split_requests(sentence: str) -> list[str]:

@@ -21,6 +21,8 @@ SHORTHAND = word_map("shorthand")
 FILLERS = word_set("fillers")
 """Words that may precede an imperative without changing it."""
 OPENING_PHRASES = word_list("opening_phrases")
+URGENT = frozenset(["please", "now", "quick", "quickly", "hurry"])
+"""Words that make a request of a name alone."""
 
 
 IDIOMS = word_map("idioms")
@@ -49,6 +51,21 @@ PAUSE_CORRECTION = re.compile(
 """The same after a pause: "the yarn... the string"."""
 
 
+NEGATIVE_QUESTION = re.compile(
+    r"(?:^|(?<=[.!?;,] ))"
+    r"(?:(?P<verb>is|are|was|did|should|would|could|wo|can|ca|has|have)n't (?=you\b)|"
+    r"(?P<other>is|are|was|do|does|did|should|would|could|wo|can|ca|has|have)n't "
+    r"(?=(?:it|we|i|that|this|the|these|those|my|someone|somebody|he|she|they)\b))"
+)
+"""Questions that expect a yes: "shouldn't you be oiling that chain?" denies nothing."""
+NEGATED_STEMS = {"wo": "will", "ca": "can"}
+IF_YOU_WOULD = re.compile(
+    r",?\s*if you (?:would|could|can|please|will|may|wouldn't mind)(?: be so kind)?(?=[.!?]*$)"
+)
+NUMBERED = re.compile(r"(?:^|(?<=\s))\(?\d{1,2}[.)](?=\s)")
+"""Numbers of a list: "1) take the sponge 2) scrub the sink"."""
+
+
 def clean(text: str) -> str:
     """One line of lower-case words and plain punctuation.
 
@@ -60,10 +77,15 @@ def clean(text: str) -> str:
     text = "".join(kept).translate(QUOTES).lower()
     text = re.sub(r"</?\w{1,8}>", " ", text)
     text = re.sub(r"([a-z])\1{2,}", r"\1\1", text)
-    text = USABLE.sub("give me", text)
+    text = USABLE.sub("give me", NUMBERED.sub(";", text))
+    text = NEGATIVE_QUESTION.sub(
+        lambda m: NEGATED_STEMS.get(verb := m["verb"] or m["other"], verb) + " ",
+        IF_YOU_WOULD.sub(" please", text),
+    )
     text = PAUSE_CORRECTION.sub(
         lambda m: f"{m['particle'].strip()} " if m["particle"] else "", text
     )
+    text = re.sub(r"\b(what|who|where|how|when|why)'s\b", r"\1 is", text)
     text = re.sub(r"(?<=[a-z])/(?=[a-z])", " or ", text)
     text = re.sub(r"[\"()\[\]{}*_#<>|\\^~=+]", " ", text)
     text = re.sub(r"\.{2,}|\s[-–—]+\s|--+|[–—]", " , ", text)
@@ -88,11 +110,20 @@ def split_sentences(text: str) -> list[str]:
     return [part.strip(" ,.:-'") for part in parts if re.search(r"\w", part)]
 
 
+WALK = re.compile(
+    r"(?:go|walk|come|head|run) (?:(?:over|back|up|down|out|in) )?(?:to|into) (?:the|my|your) "
+    r"(?:[\w-]+ ){0,2}?[\w-]+(?:,| and| then)+ (?=\w)"
+)
+"""On the way to the task: "go over to the bench and ..."."""
+
+
 def strip_opener(segment: str) -> str:
-    """The segment without greetings and set phrases before its verb."""
+    """The segment without greetings, ways to go and set phrases before its verb."""
     while True:
         before = segment
         segment = segment.lstrip(" ,-")
+        walk = WALK.match(segment)
+        segment = segment[walk.end() :] if walk else segment
         for phrase in OPENING_PHRASES:
             if segment.startswith(phrase + " "):
                 segment = segment[len(phrase) :].lstrip(" ,")

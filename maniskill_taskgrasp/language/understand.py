@@ -8,19 +8,18 @@ from typing import TYPE_CHECKING
 
 from maniskill_taskgrasp.errors import echo
 from maniskill_taskgrasp.language.actions import (
-    LONGEST_SAID,
     ActionScores,
     most_frequent_parameters,
     score_actions,
 )
-from maniskill_taskgrasp.language.clauses import clause_without_verb
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.guard import TRY, refuse
 from maniskill_taskgrasp.language.instruction import Instruction, Rejected
 from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, load_lexicon
+from maniskill_taskgrasp.language.meaning import tasks_by_meaning
 from maniskill_taskgrasp.language.model import load_model
 from maniskill_taskgrasp.language.objects import Held, antecedent, choose_object
-from maniskill_taskgrasp.language.plan import Task, Told, alone, contradiction, make_tasks, tell
+from maniskill_taskgrasp.language.plan import Task, alone, contradiction, make_tasks, tell
 from maniskill_taskgrasp.language.segments import (
     frame,
     request_of_state,
@@ -28,12 +27,10 @@ from maniskill_taskgrasp.language.segments import (
     strip_retraction,
 )
 from maniskill_taskgrasp.language.spelling import correct, correct_verb
-from maniskill_taskgrasp.language.text import FILLERS, MAX_SEGMENTS, clean, split_sentences
+from maniskill_taskgrasp.language.text import FILLERS, MAX_SEGMENTS, URGENT, clean, split_sentences
 from maniskill_taskgrasp.language.words import word_set
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from spacy.tokens import Doc
 
     from maniskill_taskgrasp.language.clauses import Clause
@@ -44,10 +41,6 @@ NAMED_MINIMUM = 0.25  # The same where the clause names an object of the data.
 REFUSED_VERBS = word_set("refused_verbs")
 """Verbs that are no task for a hand, whatever their nouns."""
 NO_ACTION_MAXIMUM = 0.5  # Probability of "none of the 74" above which an unknown verb is refused.
-WHOLE_MINIMUM = 0.5  # The same where only the whole sentence is read, without any grammar.
-WHOLE_NO_ACTION = 0.1  # Probability of "none of the 74" above which it is not read so.
-URGENT = frozenset(["please", "now", "quick", "quickly", "hurry"])
-"""Words that make a request of a name alone."""
 BY_MEANING = "no listed phrase has "
 TRANSFER_NOTE = "the words ask for a transfer, not a use: the object's usual actions decide"
 LIGHTER_NOTE = "the sentence encoder is not installed ({}): only listed phrases are understood"
@@ -121,44 +114,19 @@ def understand_clean(
         answers = [answer(task, text, object_override) for task in make_tasks(told)]
     refused = answers
     if not any(isinstance(a, Instruction) for a in answers):
-        answers = [*read_whole(text, segments, docs, object_override)]
-    if not answers:
         meant = next(filter(None, map(request_of_state, split_sentences(cleaned))), None)
-        if meant is None:
-            return explain_refusal(text, refused, docs)
-        notes = (*notes, f"took the complaint as {meant!r}")
-        return understand_clean(text, meant, notes, object_override)
+        if meant is not None:
+            notes = (*notes, f"took the complaint as {meant!r}")
+            return understand_clean(text, meant, notes, object_override)
+        answers = [answer(t, text, object_override) for t in tasks_by_meaning(segments, docs)]
+    if not any(isinstance(a, Instruction) for a in answers):
+        return explain_refusal(text, refused + answers, docs)
     understood = [a for a in answers if isinstance(a, Instruction)]
     first = answers.index(understood[0])
     later = tuple(
         a for a in answers[first + 1 :] if isinstance(a, Instruction) or a.kind == "no_object"
     )
     return finish(understood[0], text, later, notes)
-
-
-def read_whole(
-    text: str, segments: list[Segment], docs: list[Doc], object_override: str | None
-) -> Iterator[Instruction]:
-    """Requests whose grammar says nothing but whose meaning is plain: "the lid off, quick".
-
-    Only what names an object and sounds like a request for one of the 74 actions is read so.
-    """
-    for segment, doc in zip(segments, docs, strict=True):
-        denied = segment.negated or any(c.negated for c in doc._.clauses)
-        mentions = tuple(m for m in doc._.mentions if m.objects[0][1] >= SYNONYM_SCORE)
-        silent = not any(token.pos_ in {"VERB", "ADP"} for token in doc)
-        told = any(token.tag_ == "VBD" for token in doc)
-        named = bool(mentions) or object_override is not None
-        long = len(segment.text) > LONGEST_SAID
-        if segment.asking or denied or silent or told or long or not named:
-            continue
-        clause = clause_without_verb(doc, mentions, segment.text)
-        scores = score_actions(clause, said=segment.text)
-        if scores.no_action > WHOLE_NO_ACTION or scores.ranked[0][1] < WHOLE_MINIMUM:
-            continue
-        found = answer(Task(Told(clause, (), (), segment.text)), text, object_override)
-        if isinstance(found, Instruction):
-            yield found
 
 
 def bare_name(cleaned: str) -> str | None:
@@ -176,7 +144,7 @@ def bare_request(
     text: str, cleaned: str, name: str, notes: tuple[str, ...]
 ) -> Instruction | Rejected:
     """A name alone is a transfer when said politely or urgently, and nothing otherwise."""
-    if not URGENT & set(re.split(r"[^a-z]+", cleaned)):
+    if not URGENT & set(re.split(r"[^a-z]+", cleaned)) and not cleaned.endswith("!"):
         reason = f"{echo(text)} names {name!r} but nothing to do with it: try 'hand me the {name}'"
         return Rejected(text, reason, "no_action")
     return Instruction(
@@ -243,7 +211,7 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
     scores = None
     if task.told is not None:
         scores = score_actions(task.told.clause, referents(task), task.told.said)
-        if not is_meant(task.told.clause, scores):
+        if not task.meant and not is_meant(task.told.clause, scores):
             if task.preparation is not None:
                 return answer(alone(task.preparation)[0], text, object_override)
             reason = f"no action of the data fits {echo(task.told.clause.text)}: {TRY}"
@@ -257,7 +225,7 @@ def answer(task: Task, text: str, object_override: str | None) -> Instruction | 
         unsure = scores is not None and (
             not scores.known_verb or (scores.no_action > NO_ACTION_MAXIMUM and not names_object)
         )
-        if held.guessed and unsure:  # One guess may stand, two may not.
+        if held.guessed and unsure and not task.meant:  # One guess may stand, two may not.
             reason = f"no action of the data fits {echo(task.source.clause.text)}: {TRY}"
             return Rejected(text, reason, "off_topic")
     by_meaning = None
