@@ -62,7 +62,7 @@ class LanguageConfig:
     """Sentences made of each situation."""
     weight_decay: float = 1e-5
     """L2 penalty on the head's weights."""
-    steps: int = 60
+    steps: int = 25
     """L-BFGS iterations."""
     seed: int = 0
     """Seed of the sentence generator."""
