@@ -10,7 +10,7 @@ import pytest
 
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.selection import learning, targets
-from maniskill_taskgrasp.selection.baselines import by_pair
+from maniskill_taskgrasp.selection.baselines import by_object, by_pair, prior
 from maniskill_taskgrasp.selection.dataset import load_table
 from maniskill_taskgrasp.selection.ensemble import tempered
 from maniskill_taskgrasp.selection.evidence import condense, fit_describer
@@ -22,7 +22,7 @@ from maniskill_taskgrasp.selection.models import all_models
 from maniskill_taskgrasp.selection.names import name_vectors
 from maniskill_taskgrasp.selection.recipe import Recipe, fit_selector
 from maniskill_taskgrasp.selection.report import markdown
-from maniskill_taskgrasp.selection.scoring import evaluate
+from maniskill_taskgrasp.selection.scoring import evaluate, paired_intervals
 from maniskill_taskgrasp.selection.selector import Selector
 from maniskill_taskgrasp.selection.splits import folds_of
 from maniskill_taskgrasp.selection.tuning import held_out
@@ -195,6 +195,22 @@ def test_pair_table_reproduces_the_published_baseline(table, tmp_path):
     assert 100 * row["own@1"][0] == pytest.approx(51.2, abs=0.05)
     assert 100 * row["o"][0] == pytest.approx(69.9, abs=0.05)
     assert 100 * row["p"][0] == pytest.approx(67.1, abs=0.05)
+
+
+def test_paired_intervals_hold_the_mean_difference(small_table, tmp_path):
+    """Around the mean over folds of what was scored; a model differs from itself by nothing."""
+    models = {"object": by_object, "same": by_object, "prior": prior}
+
+    def gaps(other):
+        return paired_intervals("object", other, models, small_table, "actions", tmp_path)
+
+    folds = [
+        evaluate(name, models[name], small_table, "actions", tmp_path)["folds"]
+        for name in ("object", "prior")
+    ]
+    for metric, (low, high) in gaps("prior").items():
+        assert low < np.mean(folds[0][metric]) - np.mean(folds[1][metric]) < high
+    assert all(gap == [0, 0] for gap in gaps("same").values())
 
 
 def test_learning_curve_ends_at_the_whole_training_set(small_table, monkeypatch):

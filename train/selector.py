@@ -29,8 +29,8 @@ from maniskill_taskgrasp.selection.learning import CURVES, SHARES, learning_curv
 from maniskill_taskgrasp.selection.models import all_models
 from maniskill_taskgrasp.selection.paper_protocol import PaperConfig, train_leaking
 from maniskill_taskgrasp.selection.recipe import Recipe, fit_selector
-from maniskill_taskgrasp.selection.report import markdown
-from maniskill_taskgrasp.selection.scoring import evaluate
+from maniskill_taskgrasp.selection.report import RIVAL, markdown
+from maniskill_taskgrasp.selection.scoring import evaluate, paired_intervals
 from maniskill_taskgrasp.selection.splits import FOLDS, SPLITS
 from maniskill_taskgrasp.selection.targets import leaks
 from maniskill_taskgrasp.selection.tuning import tuned
@@ -83,6 +83,9 @@ def score(config: SelectorConfig, table: GraspTable, results: dict[str, Any]) ->
             found = leaks({k: v[0] for k, v in figures["row"].items()}) if split == "random" else []
             if found:
                 raise InputError(f"{name} on a random split is too good to be true: {found}")
+        if {"ours", RIVAL} <= set(names):
+            gaps = paired_intervals("ours", RIVAL, models, table, split, work)
+            results.setdefault("paired", {})[split] = gaps
     results["honest"] = {name: honest[name] for name in models if name in honest}
 
 

@@ -32,7 +32,8 @@ def markdown(results: Results) -> str:
     honest = results.get("honest", {})
     for split in SPLITS:
         if any(split in figures for figures in honest.values()):
-            parts += ["", *_split_section(honest, split)]
+            gaps = results.get("paired", {}).get(split, {})
+            parts += ["", *_split_section(honest, split, gaps)]
     if "paper" in results:
         parts += ["", *_paper_section(results)]
     if "learning" in results:
@@ -49,18 +50,19 @@ HOW_TO_READ = (
     "and logistic regression. 95 % interval: of the row-weighted figure, had other pairs (objects, "
     "actions, rows) been filmed, drawn anew within each fold; of ECE, what a calibrated model of "
     "the same confidence and spread would score on average and at most in 95 % of cases. Label "
-    "noise: deviation of the figure, had the same people done the same once more."
+    "noise: deviation of the figure, had the same people done the same once more. Minus four: mean "
+    "+- deviation over folds; in brackets 95 % of that mean, had other groups been filmed."
 )
 
 
-def _split_section(honest: Results, split: str) -> list[str]:
+def _split_section(honest: Results, split: str, gaps: Results) -> list[str]:
     lines = [f"## Held out: {split}", ""]
     lines += [_row("model", *SHOWN, "NLL", "ECE"), _rule(9)]
     for model, by_split in honest.items():
         if split in by_split:
             lines.append(_model_row(model, by_split[split]))
     if split in honest.get("ours", {}):
-        lines += ["", *_target_lines(honest, split)]
+        lines += ["", *_target_lines(honest, split, gaps)]
         lines += ["", *_paired_lines(honest, split)]
     return lines
 
@@ -72,7 +74,7 @@ def _model_row(model: str, figures: Results) -> str:
     return _row(model, *cells)
 
 
-def _target_lines(honest: Results, split: str) -> list[str]:
+def _target_lines(honest: Results, split: str, gaps: Results) -> list[str]:
     """Each target of the split: what was measured, how sure that is, and the verdicts."""
     ours, rival = honest["ours"][split], honest.get(RIVAL, {}).get(split)
     header = ("figure of ours", "weighted by", "target", "measured", "std", "verdict")
@@ -85,6 +87,9 @@ def _target_lines(honest: Results, split: str) -> list[str]:
                 sure = _sureness(ours, metric) if weighting == "row" else ("", "")
                 folds = "folds" if weighting == "row" else "pair_folds"
                 gap = _gap(metric, ours[folds], rival[folds]) if rival else ""
+                if weighting == "row" and metric in gaps:
+                    low, high = (_signed(metric, value) for value in gaps[metric])
+                    gap += f" ({low} to {high})"
                 verdicts = verdict(metric, mean, target)
                 lines.append(_row(metric, weighting, *shown, verdicts, *sure, gap))
     return [*lines, _calibration_line(ours, rival, split)]

@@ -123,6 +123,35 @@ def _pooled(tested: dict[str, np.ndarray], table: GraspTable, split: str) -> dic
     }
 
 
+def paired_intervals(
+    first: str, second: str, models: dict[str, Model], table: GraspTable, split: str, folder: Path
+) -> dict[str, list[float]]:
+    """95 % interval [low, high] of first minus second, row-weighted mean over folds, per metric.
+
+    Both are scored on the same rows and the split's groups are drawn anew for both at once.
+    """
+    gaps: dict[str, list[np.ndarray]] = {metric: [] for metric in INTERVALS_OF}
+    tested, fold = [], []
+    pairs_of_predictions = zip(
+        folds_of(table, split),
+        *(predictions(name, models[name], table, split, folder) for name in (first, second)),
+        strict=True,
+    )
+    for number, ((_, test), mine, other) in enumerate(pairs_of_predictions):
+        rows = np.flatnonzero(test)
+        asked = table.take(rows)
+        values, others = row_values(mine, asked), row_values(other, asked)
+        for metric, parts in gaps.items():
+            parts.append(values[metric] - others[metric])
+        tested.append(rows)
+        fold.append(np.full(len(rows), number))
+    group = group_of_rows(table, split)[np.concatenate(tested)]
+    return {
+        metric: group_interval(np.concatenate(parts), group, np.concatenate(fold))
+        for metric, parts in gaps.items()
+    }
+
+
 def row_values(prediction: Prediction, test: GraspTable) -> dict[str, np.ndarray]:
     """`metrics.per_row` of a prediction; o and p by the model's own heads where it has them."""
     values = metrics.per_row(prediction.scores, test.topology, test.label_sets)
