@@ -183,8 +183,9 @@ CPU_TASK_GRASP: dict[str, Any] = {
 CPU_OTHER: dict[str, Any] = {"num_envs": 1, "num_eval_envs": 1, "num_steps": CPU_ROLLOUT}
 
 PRESETS: dict[str, dict[str, Any]] = {
-    # (With failed episodes ended, a reward that is negative until something is touched teaches to
-    # fail soon; CPU_TASK_GRASP lets them run on.) The paper's learning rate, discount, clipping range and sample budget; 20 updates of 2500.
+    # The paper's learning rate, discount, clipping range and sample budget; 20 updates of 2500.
+    # Failed episodes must run on (CPU_TASK_GRASP): with a reward that is negative until something
+    # is touched, ended ones teach to fail soon.
     "paper": {
         "env_id": TASK_GRASP,
         "obs": "paper",
