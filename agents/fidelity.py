@@ -22,8 +22,6 @@ BACK_COSINE = -0.5  # Normal against the pad's direction: the back of the digit.
 GOOD_SHARE = 0.5  # Least share of a digit's force on good surface.
 UNNAMED_SHARE = 0.10  # Most force on digits that the name does not list.
 PALM_SHARE = {"Precision": 0.05, "Power": 0.25}  # Most force on the palm in pad types.
-THUMB_ABDUCTED = 1.10  # [rad] commanded thumb rotation between adducted and abducted.
-STRAIGHT_PIP = 0.5  # [rad] most bend of a finger in a parallel extension.
 PALM_NORMAL = 0.5  # Least component of the contact normal along the palm's.
 
 PALM, THUMB = PARTS.index("palm"), PARTS.index("thumb")
@@ -127,6 +125,7 @@ class _Grasp:
     asked: dict[str, Tensor]
     thumb_rotation: Tensor
     pip: Tensor
+    hand: HandDescription
 
     @cached_property
     def touches(self) -> Tensor:
@@ -141,7 +140,7 @@ class _Grasp:
     @cached_property
     def abducted(self) -> Tensor:
         """(num_envs,) bool: the thumb stands opposite the fingers."""
-        return self.thumb_rotation >= THUMB_ABDUCTED
+        return self.thumb_rotation >= self.hand.thumb_abducted
 
 
 def asked_of(topology_index: Tensor) -> dict[str, Tensor]:
@@ -150,7 +149,11 @@ def asked_of(topology_index: Tensor) -> dict[str, Tensor]:
 
 
 def in_topology(
-    shares: ContactShares, asked: dict[str, Tensor], thumb_rotation: Tensor, pip: Tensor
+    shares: ContactShares,
+    asked: dict[str, Tensor],
+    thumb_rotation: Tensor,
+    pip: Tensor,
+    hand: HandDescription,
 ) -> Tensor:
     """Is the hand in the topology it was asked for?
 
@@ -162,11 +165,12 @@ def in_topology(
         asked: what `asked_of` says of the topologies.
         thumb_rotation: (num_envs,) [rad] commanded rotation of the thumb.
         pip: (num_envs, 4) [rad] middle joints of index, middle, ring, little.
+        hand: whose thresholds of rotation and bend count.
 
     Returns:
         (num_envs,) bool
     """
-    grasp = _Grasp(shares, asked, thumb_rotation, pip)
+    grasp = _Grasp(shares, asked, thumb_rotation, pip, hand)
     unnamed = (shares.force * asked["unnamed"]).sum(1)
     named = (grasp.touches | ~asked["parts"]).all(1)
     opposed = torch.where(asked["pad"], _pad_opposes(grasp), _palm_opposes(grasp))
@@ -189,7 +193,7 @@ def _pad_opposes(grasp: _Grasp) -> Tensor:
     thumb = grasp.touches[:, THUMB]
     thumb = thumb & (shares.good[:, THUMB] >= GOOD_SHARE * shares.force[:, THUMB])
     bend = (grasp.pip * grasp.touches[:, FINGERS]).amax(1)
-    straight = asked["abducted"] | (bend <= STRAIGHT_PIP)
+    straight = asked["abducted"] | (bend <= grasp.hand.straight_pip)
     palm = shares.force[:, PALM] <= asked["palm_share"] * grasp.total
     return thumb & grasp.abducted & straight & palm
 
@@ -200,7 +204,7 @@ def _palm_opposes(grasp: _Grasp) -> Tensor:
     face = grasp.shares.good[:, PALM] >= TOUCH_FORCE
     not_back = back <= GOOD_SHARE * force
     opposite = grasp.touches[:, THUMB] & not_back & grasp.abducted
-    beside = (grasp.thumb_rotation <= THUMB_ABDUCTED) & (
+    beside = (grasp.thumb_rotation <= grasp.hand.thumb_abducted) & (
         not_back | (force < UNNAMED_SHARE * grasp.total)
     )
     return face & torch.where(grasp.asked["abducted"], opposite, beside)

@@ -86,6 +86,18 @@ class HandDescription:
     """[Nms/rad] position drive."""
     armature: float
     """[kg m^2] reflected inertia of an actuator."""
+    thumb_abducted: float
+    """[rad] commanded thumb rotation from which the thumb stands against the fingers."""
+    straight_pip: float
+    """[rad] most bend of a middle joint that counts as straight."""
+    finger_range: tuple[float, float]
+    """[rad] what fingers may be commanded to."""
+    posture_lower: tuple[float, ...]
+    """(8,) [rad] box in which postures are searched: thumb rotation open and closed, thumb flexion
+    open and closed, mean knuckle and middle joint of the fingers, open, then closed."""
+    posture_upper: tuple[float, ...]
+    pinch_thumb_flex: float
+    """[rad] thumb flexion beyond which pinch types would trap objects on the thumb's back."""
     postures: dict[str, Posture] = field(default_factory=dict)
     """Topology slug -> posture."""
 

@@ -20,9 +20,8 @@ PREGRASP_FLOOR = (0.0015, 0.0015, 0.0015, 0.02, 0.02, 0.02)
 # The same spreads for the eight of `PostureSpace`, whose box depends on the topology.
 POSTURE_SPREAD = (0.12, 0.20, 0.08, 0.25, 0.15, 0.25, 0.25, 0.35)
 POSTURE_FLOOR = (0.01,) * 8
-THUMB_ABDUCTED, THUMB_ADDUCTED = 1.12, 1.07  # [rad] bounds of the thumb's rotation (fidelity).
-PINCH_THUMB_FLEX = 0.95  # [rad] beyond it pinch types trap objects on the thumb's back.
-STRAIGHT_PIP = 0.45  # [rad] most bend of the fingers in a parallel extension.
+# [rad] by which a searched posture keeps clear of the thresholds of form.
+ABOVE_ABDUCTED, BELOW_ABDUCTED, BELOW_STRAIGHT = 0.02, 0.03, 0.05
 
 
 @dataclass(frozen=True)
@@ -37,6 +36,8 @@ class PostureSpace:
     closing: Array
     lower: Array
     upper: Array
+    finger_range: tuple[float, float]
+    """[rad]"""
     rotates: bool
     """Whether the thumb's rotation is part of the closing."""
 
@@ -44,23 +45,24 @@ class PostureSpace:
     def of(cls, hand: HandDescription, topology: Topology) -> PostureSpace:
         """Bounds that keep the posture within the topology's name."""
         posture = hand.postures[topology.slug]
-        lower = np.array([0.85, 0.85, 0.34, 0.34, 0.17, 0.17, 0.50, 0.17])
-        upper = np.array([1.90, 1.90, 0.70, 1.50, 1.10, 1.40, 1.57, 1.57])
+        lower, upper = np.array(hand.posture_lower), np.array(hand.posture_upper)
+        abducted = hand.thumb_abducted
         if topology.opposition == "Pad":
-            upper[3] = PINCH_THUMB_FLEX
-            lower[:2] = THUMB_ABDUCTED
+            upper[3] = hand.pinch_thumb_flex
+            lower[:2] = abducted + ABOVE_ABDUCTED
             if not topology.thumb_abducted:
-                upper[[5, 7]] = STRAIGHT_PIP
+                upper[[5, 7]] = hand.straight_pip - BELOW_STRAIGHT
         elif topology.opposition == "Palm":
             if topology.thumb_abducted:
-                lower[:2] = THUMB_ABDUCTED
+                lower[:2] = abducted + ABOVE_ABDUCTED
             else:
-                upper[:2] = THUMB_ADDUCTED
+                upper[:2] = abducted - BELOW_ABDUCTED
         return cls(
             preshape=np.array(posture.preshape),
             closing=np.array(posture.closing),
             lower=lower,
             upper=upper,
+            finger_range=hand.finger_range,
             rotates=bool(posture.moving[0]),
         )
 
@@ -98,6 +100,6 @@ class PostureSpace:
                 at = i + joint
                 preshape[:, at] += numbers[:, 4 + joint] - centre[joint]
                 closing[:, at] += numbers[:, 6 + joint] - centre[2 + joint]
-        preshape[:, 2:] = preshape[:, 2:].clip(0.17, 1.57)
-        closing[:, 2:] = closing[:, 2:].clip(0.17, 1.57)
+        preshape[:, 2:] = preshape[:, 2:].clip(*self.finger_range)
+        closing[:, 2:] = closing[:, 2:].clip(*self.finger_range)
         return preshape, closing

@@ -368,7 +368,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         # The thumb's rotation counts as commanded: its contact bends it back (facts: grasping, 6).
         command = self.agent.controller.controllers["hand"].command
         thumb = command[:, self.agent.thumb_rotation]
-        return in_topology(shares, self._asked, thumb, pip)
+        return in_topology(shares, self._asked, thumb, pip, self.agent.hand)
 
     # Observation
 

@@ -33,7 +33,11 @@ def formed(topology, parts, thumb=ABDUCTED, pip=BENT):
     columns = {key: torch.tensor([[row[key] for row in rows]]) for key in rows[0]}
     index = torch.tensor([resolve_topology(topology).index])
     result = in_topology(
-        ContactShares(**columns), asked_of(index), torch.tensor([thumb]), torch.full((1, 4), pip)
+        ContactShares(**columns),
+        asked_of(index),
+        torch.tensor([thumb]),
+        torch.full((1, 4), pip),
+        AR10,
     )
     return bool(result[0])
 
@@ -288,6 +292,6 @@ def test_environments_are_judged_each_by_its_own_topology():
     names = ("precision pad abd 2", "precision pad abd 2-3")
     index = torch.tensor([resolve_topology(name).index for name in names])
     found = in_topology(
-        shares, asked_of(index), torch.full((2,), ABDUCTED), torch.full((2, 4), BENT)
+        shares, asked_of(index), torch.full((2,), ABDUCTED), torch.full((2, 4), BENT), AR10
     )
     assert found.tolist() == [True, False]

@@ -54,5 +54,11 @@ AR10 = HandDescription(
     stiffness=8.0,
     damping=0.4,
     armature=5e-4,
+    thumb_abducted=1.10,  # Facts: grasping, section 6.
+    straight_pip=0.5,
+    finger_range=(0.17, 1.57),
+    posture_lower=(0.85, 0.85, 0.34, 0.34, 0.17, 0.17, 0.50, 0.17),
+    posture_upper=(1.90, 1.90, 0.70, 1.50, 1.10, 1.40, 1.57, 1.57),
+    pinch_thumb_flex=0.95,  # Facts: grasping, section 1.
     postures=POSTURES,
 )
