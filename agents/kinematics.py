@@ -11,7 +11,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from maniskill_taskgrasp.agents.sawyer_ar10.model import Robot, rotation
+from maniskill_taskgrasp.agents.robot_model import Robot, rotation
 
 if TYPE_CHECKING:
     from mani_skill.utils.structs import Articulation

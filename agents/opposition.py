@@ -11,7 +11,7 @@ from torch import Tensor
 from maniskill_taskgrasp.agents.fidelity import SURFACE_ANGLE, arc_cosine
 from maniskill_taskgrasp.agents.hand import HandDescription, Posture
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
-from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, Primitive, rotation
+from maniskill_taskgrasp.agents.robot_model import Box, Primitive, rotation
 from maniskill_taskgrasp.topology import Topology
 
 INSTANTS = 41  # Of the closing at which gaps are taken, activation 0 to 1.

@@ -10,7 +10,7 @@ from torch import Tensor
 
 from maniskill_taskgrasp.agents.hand import HandDescription, Posture
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
-from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, Primitive
+from maniskill_taskgrasp.agents.robot_model import Box, Primitive
 from maniskill_taskgrasp.tasks.grasp_library import nearest_grasps
 from maniskill_taskgrasp.tasks.placement import Placement
 from maniskill_taskgrasp.tasks.pregrasp import palm_rotation

@@ -11,7 +11,7 @@ import torch
 from torch import Tensor
 
 from maniskill_taskgrasp.agents.hand import PARTS
-from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, Primitive, rotation
+from maniskill_taskgrasp.agents.robot_model import Box, Primitive, rotation
 from maniskill_taskgrasp.tasks.surface import Surface
 
 NEAREST_CELLS = 4  # Cells of the object's surface that are looked at closely for each part.

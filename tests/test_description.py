@@ -9,6 +9,12 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
+from maniskill_taskgrasp.agents.robot_model import (
+    Box,
+    Cylinder,
+    inertia_of_primitives,
+    rotation,
+)
 from maniskill_taskgrasp.agents.sawyer_ar10.ar10 import HAND_LINKS
 from maniskill_taskgrasp.agents.sawyer_ar10.build import build, default_folder
 from maniskill_taskgrasp.agents.sawyer_ar10.description import (
@@ -19,12 +25,6 @@ from maniskill_taskgrasp.agents.sawyer_ar10.description import (
     SAWYER_AR10,
 )
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
-from maniskill_taskgrasp.agents.sawyer_ar10.model import (
-    Box,
-    Cylinder,
-    inertia_of_primitives,
-    rotation,
-)
 
 MOVING = (*ARM_JOINT_NAMES, *HAND_JOINT_NAMES, *COUPLED_JOINT_NAMES)
 

@@ -8,10 +8,7 @@ import sapien
 import torch
 
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
-from maniskill_taskgrasp.agents.sawyer_ar10.build import default_folder, urdf
-from maniskill_taskgrasp.agents.sawyer_ar10.description import SAWYER_AR10, SIMULATED
-from maniskill_taskgrasp.agents.sawyer_ar10.fuse import Fusion, fuse
-from maniskill_taskgrasp.agents.sawyer_ar10.model import (
+from maniskill_taskgrasp.agents.robot_model import (
     Box,
     Inertia,
     Joint,
@@ -20,6 +17,9 @@ from maniskill_taskgrasp.agents.sawyer_ar10.model import (
     rotation,
     rpy_of,
 )
+from maniskill_taskgrasp.agents.sawyer_ar10.build import default_folder, urdf
+from maniskill_taskgrasp.agents.sawyer_ar10.description import SAWYER_AR10, SIMULATED
+from maniskill_taskgrasp.agents.sawyer_ar10.fuse import Fusion, fuse
 
 AS_DESCRIBED = Fusion(
     SAWYER_AR10, {link.name: (link.name, np.eye(4)) for link in SAWYER_AR10.links}

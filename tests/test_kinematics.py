@@ -6,6 +6,7 @@ import pytest
 import torch
 
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
+from maniskill_taskgrasp.agents.robot_model import Joint, Link, Robot
 from maniskill_taskgrasp.agents.rotations import (
     axis_angle_matrix,
     pose_error,
@@ -16,7 +17,6 @@ from maniskill_taskgrasp.agents.rotations import (
 )
 from maniskill_taskgrasp.agents.sawyer_ar10.description import SAWYER_AR10, SIMULATED
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
-from maniskill_taskgrasp.agents.sawyer_ar10.model import Joint, Link, Robot
 
 ARM = Robot(
     name="planar",

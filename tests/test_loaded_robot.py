@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 
+from maniskill_taskgrasp.agents.robot_model import Box, rotation
 from maniskill_taskgrasp.agents.sawyer_ar10.build import default_folder
 from maniskill_taskgrasp.agents.sawyer_ar10.description import (
     ARM_JOINT_NAMES,
@@ -15,7 +16,6 @@ from maniskill_taskgrasp.agents.sawyer_ar10.description import (
     SIMULATED,
 )
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
-from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, rotation
 
 MOVING = (*ARM_JOINT_NAMES, *HAND_JOINT_NAMES, *COUPLED_JOINT_NAMES)
 TIPS = tuple(link.name for link in SAWYER_AR10.links if link.name.endswith("_tip"))

@@ -9,9 +9,9 @@ from scipy.optimize import nnls
 
 import maniskill_taskgrasp  # noqa: F401  (Registers the task.)
 from maniskill_taskgrasp.agents.hand import PARTS
+from maniskill_taskgrasp.agents.robot_model import Box
 from maniskill_taskgrasp.agents.rotations import pose_to_frame, quat_multiply, quat_to_matrix
 from maniskill_taskgrasp.agents.sawyer_ar10.description import PART_PRIMITIVES, SENSED_PRIMITIVES
-from maniskill_taskgrasp.agents.sawyer_ar10.model import Box
 from maniskill_taskgrasp.assets.objects import library
 from maniskill_taskgrasp.assets.objects.geometry import depth_inside
 from maniskill_taskgrasp.assets.objects.model import Part

@@ -7,12 +7,12 @@ import struct
 import numpy as np
 import pytest
 
+from maniskill_taskgrasp.agents.robot_model import rotation
 from maniskill_taskgrasp.agents.sawyer_ar10.description import HAND_JOINT_NAMES, SAWYER_AR10
 from maniskill_taskgrasp.agents.sawyer_ar10.elbow import Elbow
 from maniskill_taskgrasp.agents.sawyer_ar10.glb import Surface, glb
 from maniskill_taskgrasp.agents.sawyer_ar10.look_ar10 import LOOKS as AR10_LOOKS
 from maniskill_taskgrasp.agents.sawyer_ar10.look_sawyer import LOOKS as SAWYER_LOOKS
-from maniskill_taskgrasp.agents.sawyer_ar10.model import rotation
 from maniskill_taskgrasp.agents.sawyer_ar10.shapes import (
     cylinder,
     plate,

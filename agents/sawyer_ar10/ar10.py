@@ -9,8 +9,7 @@ All frames are parallel to the wrist plate's at joint angle zero: +z along the s
 
 from __future__ import annotations
 
-from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10, FINGERS
-from maniskill_taskgrasp.agents.sawyer_ar10.model import (
+from maniskill_taskgrasp.agents.robot_model import (
     Box,
     Cylinder,
     Joint,
@@ -19,6 +18,7 @@ from maniskill_taskgrasp.agents.sawyer_ar10.model import (
     Vec3,
     inertia_of_primitives,
 )
+from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10, FINGERS
 
 HAND_ROOT = "hand_base"  # Wrist plate, bolted to the arm's flange.
 

@@ -14,9 +14,7 @@ from importlib.resources import files
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from maniskill_taskgrasp.agents.sawyer_ar10.description import SIMULATED
-from maniskill_taskgrasp.agents.sawyer_ar10.fuse import Fusion, Transform
-from maniskill_taskgrasp.agents.sawyer_ar10.model import (
+from maniskill_taskgrasp.agents.robot_model import (
     Box,
     Inertia,
     Joint,
@@ -24,6 +22,8 @@ from maniskill_taskgrasp.agents.sawyer_ar10.model import (
     Primitive,
     rpy_of,
 )
+from maniskill_taskgrasp.agents.sawyer_ar10.description import SIMULATED
+from maniskill_taskgrasp.agents.sawyer_ar10.fuse import Fusion, Transform
 from maniskill_taskgrasp.agents.sawyer_ar10.visuals import link_meshes, mesh_files
 
 MESHES = "meshes"

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from maniskill_taskgrasp.agents.robot_model import Joint, Primitive, Robot
 from maniskill_taskgrasp.agents.sawyer_ar10.ar10 import HAND_JOINTS, HAND_LINKS, HAND_ROOT
 from maniskill_taskgrasp.agents.sawyer_ar10.fuse import fuse
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
-from maniskill_taskgrasp.agents.sawyer_ar10.model import Joint, Primitive, Robot
 from maniskill_taskgrasp.agents.sawyer_ar10.sawyer import (
     ARM_JOINTS,
     ARM_LINKS,

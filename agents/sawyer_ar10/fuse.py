@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from maniskill_taskgrasp.agents.sawyer_ar10.model import (
+from maniskill_taskgrasp.agents.robot_model import (
     Inertia,
     Joint,
     Link,

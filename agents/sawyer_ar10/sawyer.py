@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import pi
 
-from maniskill_taskgrasp.agents.sawyer_ar10.model import Box, Cylinder, Inertia, Joint, Link
+from maniskill_taskgrasp.agents.robot_model import Box, Cylinder, Inertia, Joint, Link
 
 ALONG_Y = (-pi / 2, 0.0, 0.0)  # Turns a cylinder's own z into the link's y.
 BUILT_IN_TWIST = -0.17453  # [rad] j6 is twisted by 10 degrees: the hand's zero is no round number.

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from maniskill_taskgrasp.agents.sawyer_ar10.model import rotation
+from maniskill_taskgrasp.agents.robot_model import rotation
 
 Array = NDArray[np.float64]
 Soup = Array
