@@ -352,6 +352,16 @@ def test_open_mesh_is_closed_or_said_to_be_open(own_library, tmp_path):
     assert load("lid").volume_m3 == pytest.approx(72e-6, rel=0.05)
 
 
+def test_bodies_that_overlap_count_once():
+    """Two crossing bars weigh what their union does; a hollow ball is solid, as from outside."""
+    bars = [trimesh.creation.box((0.1, 0.02, 0.02)), trimesh.creation.box((0.02, 0.1, 0.02))]
+    assert mend(trimesh.util.concatenate(bars)).volume == pytest.approx(72e-6, rel=1e-3)
+    ball, cavity = trimesh.creation.icosphere(3, 0.03), trimesh.creation.icosphere(3, 0.025)
+    cavity.invert()
+    hollow = mend(trimesh.util.concatenate([ball, cavity]))
+    assert hollow.volume == pytest.approx(ball.volume, rel=1e-3)
+
+
 def test_folder_is_imported_but_for_what_does_not_do(own_library, tmp_path):
     """Names differ where stems do not; a bad file is a line with its reason."""
     for folder in ("left", "right"):

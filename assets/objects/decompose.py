@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from maniskill_taskgrasp.assets.objects.closeness import MAX_PROTRUSION, part_hulls, protrusion
 from maniskill_taskgrasp.assets.objects.geometry import few_corners
 from maniskill_taskgrasp.assets.objects.model import Part
-from maniskill_taskgrasp.assets.objects.solid import thinned
+from maniskill_taskgrasp.assets.objects.solid import thinned, union_mesh
 
 if TYPE_CHECKING:
     import trimesh
@@ -48,7 +48,13 @@ def mend(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
         mesh.fill_holes()
     with np.errstate(divide="ignore", invalid="ignore"):  # An open mesh may enclose no volume yet.
         mesh.fix_normals()
-    return mesh
+    return _outer_surface(mesh) if mesh.is_volume else mesh
+
+
+def _outer_surface(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """A closed mesh without what lies inside: bodies that overlap and cavities count once."""
+    bodies = mesh.split(only_watertight=False)
+    return mesh if len(bodies) < 2 else union_mesh([(b.vertices, b.faces) for b in bodies])
 
 
 def convex_parts(mesh: trimesh.Trimesh) -> tuple[Part, ...]:
