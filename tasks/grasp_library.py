@@ -23,7 +23,8 @@ LIBRARY_FILE = "pregrasps.json"
 FORM_WEIGHT = 0.7  # Of a stored grasp's worth; the rest is the plain lift.
 WORTH = 0.7  # Size mismatch (log ratio) that one whole unit of worth makes up for.
 OTHER_TOPOLOGY = 1.0  # Size mismatch that counts for a grasp found for kin (docs/planning.md).
-OTHER_PRESENTATION = 0.5  # Size mismatch that counts for a grasp found in another presentation.
+OTHER_PRESENTATION = 1.25  # Size mismatch that counts for a grasp found in another presentation.
+MASS = 0.1  # Weight of the log ratio of masses beside those of sizes.
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,8 @@ class Grasp:
     """[m] world-aligned box of the placed object."""
     height: float
     """[m] of the object's centre above the table."""
+    mass: float
+    """[kg]"""
     pregrasp: tuple[float, ...]
     """(6,) `pregrasp.PREGRASP_FIELDS`."""
     preshape: tuple[float, ...]
@@ -51,14 +54,15 @@ class Grasp:
     trials: int
 
     def mismatch(self, placement: Placement) -> float:
-        """How little this grasp suits another object: log size ratios, less the grasp's worth."""
+        """How little this grasp suits another object: log ratios of size and mass, less its worth."""
         own, other = np.asarray(self.extents), placement.extents
         # Across the fingers (x) and in height size decides; along the object (y) hardly.
         ratios = np.abs(np.log(other / own)) * np.array([1.0, 0.25, 0.7])
+        mass = MASS * abs(np.log(placement.model.mass_kg / self.mass))
         height = abs(placement.centre[2] - self.height) / 0.05
         stand = OTHER_PRESENTATION * (placement.presentation.kind != self.presentation)
         worth = FORM_WEIGHT * self.both + (1 - FORM_WEIGHT) * self.lift
-        return float(ratios.sum() + 0.5 * height + stand - WORTH * worth)
+        return float(ratios.sum() + 0.5 * height + mass + stand - WORTH * worth)
 
 
 def nearest_grasps(

@@ -212,6 +212,7 @@ class GraspSearch:
             presentation=placement.presentation.kind,
             extents=tuple(np.round(placement.extents, 5).tolist()),
             height=round(float(placement.centre[2]), 5),
+            mass=round(placement.model.mass_kg, 5),
             pregrasp=tuple(np.round(numbers[:6], 5).tolist()),
             preshape=tuple(np.round(preshape[0], 4).tolist()),
             closing=tuple(np.round(closing[0], 4).tolist()),

@@ -23,6 +23,7 @@ FOUND = FoundGrasp(
         presentation="table",
         extents=(0.1, 0.2, 0.3),
         height=0.05,
+        mass=0.2,
         pregrasp=(0.0,) * 6,
         preshape=(0.5,) * 10,
         closing=(1.0,) * 10,

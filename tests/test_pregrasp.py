@@ -104,6 +104,7 @@ def grasp(**changes):
         "presentation": "table",
         "extents": (0.05, 0.05, 0.05),
         "height": 0.025,
+        "mass": library.load("ball").mass_kg,
         "pregrasp": (0.0,) * 6,
         "preshape": (0.5,) * 10,
         "closing": (1.0,) * 10,
@@ -119,8 +120,10 @@ def test_mismatch_prefers_like_size_and_good_grasps():
     size = tuple(placement.extents.tolist())
     same = grasp(extents=size, height=float(placement.centre[2]))
     larger = grasp(extents=tuple(1.4 * s for s in size), height=float(placement.centre[2]))
+    lighter = grasp(extents=size, height=float(placement.centre[2]), mass=0.001)
     worse = grasp(extents=size, height=float(placement.centre[2]), lift=0.2, both=0.0)
     assert same.mismatch(placement) < larger.mismatch(placement)
+    assert same.mismatch(placement) < lighter.mismatch(placement)
     assert same.mismatch(placement) < worse.mismatch(placement)
 
 
