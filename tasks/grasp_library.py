@@ -54,7 +54,7 @@ class Grasp:
     trials: int
 
     def mismatch(self, placement: Placement) -> float:
-        """How little this grasp suits another object: log ratios of size and mass, less its worth."""
+        """How little this grasp suits an object: log ratios of size and mass, less its worth."""
         own, other = np.asarray(self.extents), placement.extents
         # Across the fingers (x) and in height size decides; along the object (y) hardly.
         ratios = np.abs(np.log(other / own)) * np.array([1.0, 0.25, 0.7])
