@@ -95,7 +95,10 @@ def test_a_stock_policy_loads_and_acts(stock_run):
         ("--env-id PickCube-v1 --reward-mode nosuch", "nosuch"),
         ("--env-id TaskGrasp-v0 --noise nosuch", "hard"),
         ("--env-id TaskGrasp-v0 --topology nosuch", "nosuch"),
-        ("--env-id TaskGrasp-v0 --reconfiguration-freq 1", "--no-partial-reset"),
+        (
+            "--env-id TaskGrasp-v0 --partial-reset --reconfiguration-freq 1",
+            "--no-partial-reset",
+        ),
     ],
 )
 def test_refusals_are_one_line_and_leave_nothing(flags, message, tmp_path):
