@@ -19,7 +19,7 @@ from maniskill_taskgrasp.agents.controllers.joint_synergy import (
 from maniskill_taskgrasp.agents.controllers.palm_motion import joint_step, slowed
 from maniskill_taskgrasp.agents.kinematics import ArticulationKinematics
 from maniskill_taskgrasp.agents.rotations import pose_error
-from maniskill_taskgrasp.agents.sawyer_ar10.agent import REST_ARM
+from maniskill_taskgrasp.agents.sawyer_ar10.agent import PRESSING_ITERATIONS, REST_ARM
 from maniskill_taskgrasp.agents.sawyer_ar10.control_modes import control_modes
 from maniskill_taskgrasp.agents.sawyer_ar10.description import ARM_JOINT_NAMES, SAWYER_AR10
 from maniskill_taskgrasp.agents.sawyer_ar10.hand import AR10
@@ -192,6 +192,18 @@ def test_the_hand_keeps_its_preshape_until_it_may_close():
     for _ in range(30):
         env.step(env.single_action_space.high)
     torch.testing.assert_close(hand.command, closing.float())
+    env.close()
+
+
+def test_only_modes_without_a_path_ask_for_more_solver_iterations():
+    """And switching back takes them away again."""
+    env = make("pd_joint_pos")
+    body = env.agent.robot._objs[0]
+    pressing = body.get_solver_position_iterations()
+    env.agent.set_control_mode("pd_synergy")
+    own = body.get_solver_position_iterations()
+    env.agent.set_control_mode("pd_joint_pos")
+    assert own < PRESSING_ITERATIONS == pressing == body.get_solver_position_iterations()
     env.close()
 
 

@@ -134,11 +134,17 @@ class SawyerAR10(BaseAgent):
     def set_control_mode(self, control_mode: str | None = None) -> None:
         """As ManiSkill's; modes without a planned path make the solver keep the joints' stops."""
         super().set_control_mode(control_mode)  # type: ignore[arg-type]
-        if "synergy" in self.control_mode:
-            return
+        planned = "synergy" in self.control_mode
+        iterations = self._own_iterations
         for body in self.robot._objs:
-            least = max(body.get_solver_position_iterations(), PRESSING_ITERATIONS)
-            body.set_solver_position_iterations(least)
+            body.set_solver_position_iterations(
+                iterations if planned else max(iterations, PRESSING_ITERATIONS)
+            )
+
+    @cached_property
+    def _own_iterations(self) -> int:
+        """Solver iterations that the task gave the robot."""
+        return int(self.robot._objs[0].get_solver_position_iterations())
 
     def _after_init(self) -> None:
         self.tcp = self.robot.links_map[self.hand.palm_frame]
