@@ -33,6 +33,7 @@ GOOD_END = 0.8  # Share below which what came of a good start is not good enough
 NEAR, WIDE = 0.4, 1.0  # Spread of the first generation around a good and a poor start.
 FINALISTS = 8  # Candidates that are tried again after a wide search.
 RIVALS = 3  # Poor starts that share the first generation.
+WIDE_SEARCHES = 3  # At most, each from other starts, until one comes to something.
 PROVEN = 0.95  # Share of trials in lift and form at which a start needs no search.
 HOPELESS = 2.5  # Score below which nothing was even lifted.
 ENOUGH = 5.1  # Mean score of a generation of which nearly all lift in form.
@@ -61,8 +62,9 @@ class SearchBudget:
     @property
     def trials(self) -> int:
         """Most simulated grasps: starts, a check of the best, search about it, which of the two;
-        wide search, its finalists, search about the winner, the final choice."""
-        return self.num_envs * (self.generations + self.first + 2 * self.narrow + 4)
+        then wide searches, with finalists, search about the winner, and a choice, each."""
+        wide = self.generations + self.first + self.narrow + 1
+        return self.num_envs * (self.narrow + 3 + WIDE_SEARCHES * wide)
 
     @property
     def narrow(self) -> int:
@@ -115,8 +117,11 @@ class GraspSearch:
         good = both[row == order[0]].mean() >= GOOD_START and held.mean() >= GOOD_START
         if good and held.mean() < PROVEN:
             best, lifted, held = self._better(best, self._narrow(best))
-        if held.mean() < (GOOD_END if good else PROVEN):
-            centre = self._finalist(self._wide(starts[order[:RIVALS]]))
+        for again in range(WIDE_SEARCHES):
+            if held.mean() >= (GOOD_END if good or again else PROVEN):
+                break
+            rivals = starts[np.roll(order, -RIVALS * again)[:RIVALS]]
+            centre = self._finalist(self._wide(rivals))
             best, lifted, held = self._better(best, self._narrow(centre))
         return SearchResult(
             self._grasp(best, lifted, held),
@@ -150,13 +155,17 @@ class GraspSearch:
         seed = self._budget.seed + SEED_STEP * self._batches
         return self._trials.run(candidates[:, :6], *shapes, seed, whole=whole)
 
+    def _rng(self) -> np.random.Generator:
+        """Draws of their own for each search within this one."""
+        return np.random.default_rng([self._budget.seed, self._batches])
+
     def _wide(self, starts: Array) -> Array:
         """(FINALISTS, 14) from several poor starts: where the search came to, the best it met."""
         mean, history = cross_entropy(
             lambda candidates: self._try(candidates, whole=False)[2],
             starts,
             self._space(WIDE),
-            np.random.default_rng(self._budget.seed),
+            self._rng(),
             population=self._budget.num_envs,
             generations=self._budget.generations,
             first=self._budget.first,
@@ -181,7 +190,7 @@ class GraspSearch:
             lambda candidates: self._try(candidates, whole=True)[2],
             centre[None],
             self._space(NEAR),
-            np.random.default_rng(self._budget.seed + 1),
+            self._rng(),
             population=self._budget.num_envs,
             generations=self._budget.narrow,
             enough=ENOUGH,

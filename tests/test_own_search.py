@@ -112,8 +112,24 @@ def test_a_search_counts_its_trials_and_stays_in_bounds(monkeypatch):
     monkeypatch.setattr(grasp_search, "PROVEN", 1.1)  # No start is so good.
     budget = SearchBudget(generations=1, num_envs=8)
     found = own_search.search("screwdriver", PAD, "auto", budget)
-    assert sum(spent) == found.spent <= budget.trials == 72
+    assert sum(spent) == found.spent <= budget.trials == 152
     pregrasp = np.array(found.grasp.pregrasp)
     assert (pregrasp >= PREGRASP_LOWER).all()
     assert (pregrasp <= PREGRASP_UPPER).all()
     assert found.grasp.trials == 4
+
+
+def test_a_wide_search_that_came_to_little_is_repeated_from_other_starts(monkeypatch):
+    rivals = []
+
+    def wide(self, starts):
+        rivals.append(starts)
+        return starts
+
+    monkeypatch.setattr(grasp_search, "PROVEN", 1.1)  # No grasp is so good.
+    monkeypatch.setattr(grasp_search, "GOOD_END", 1.1)
+    monkeypatch.setattr(grasp_search.GraspSearch, "_wide", wide)
+    own_search.search("screwdriver", PAD, "auto", SearchBudget(generations=1, num_envs=16))
+    assert len(rivals) == grasp_search.WIDE_SEARCHES
+    assert not np.allclose(rivals[0], rivals[1])
+    assert not np.allclose(rivals[1], rivals[2])
