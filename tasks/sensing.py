@@ -14,7 +14,8 @@ from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.robot_model import Box, Primitive, rotation
 from maniskill_taskgrasp.tasks.surface import Surface
 
-NEAREST_CELLS = 4  # Cells of the object's surface that are looked at closely for each part.
+NEAREST_CELLS = 3  # Cells of the object's surface that are looked at closely for each part.
+NOWHERE = 1000.0  # [m] away are boxes that only fill a part up.
 
 
 def part_forces(link_forces: Tensor, part_of_link: Tensor, num_parts: int) -> Tensor:
@@ -34,7 +35,7 @@ def part_forces(link_forces: Tensor, part_of_link: Tensor, num_parts: int) -> Te
 
 @dataclass(frozen=True)
 class HandBoxes:
-    """The hand's collision boxes, part by part: every part has as many, the last ones repeated."""
+    """The hand's collision boxes, part by part: every part has as many, some of them nowhere."""
 
     link: Tensor
     """(num_parts * width,) long link of each box."""
@@ -62,12 +63,16 @@ class HandBoxes:
         by_part = [[(k, b) for k, b in primitives[part] if isinstance(b, Box)] for part in PARTS]
         width = max(map(len, by_part))
         boxes = [pair for own in by_part for pair in (own + own[-1:] * width)[:width]]
+        fills = [place >= len(own) for own in by_part for place in range(width)]
 
         def tensor(rows: list[Any]) -> Tensor:
             return torch.tensor(np.array(rows), dtype=torch.float32, device=device)
 
         turns = [rotation(box.rpy).T for _, box in boxes]
-        shifts = [-turn @ box.xyz for turn, (_, box) in zip(turns, boxes, strict=True)]
+        shifts = [
+            -turn @ box.xyz + fill * NOWHERE
+            for turn, (_, box), fill in zip(turns, boxes, fills, strict=True)
+        ]
         return cls(
             link=torch.tensor([link_names.index(link) for link, _ in boxes], device=device),
             from_link=torch.cat([tensor(turns), tensor(shifts)[..., None]], -1),
@@ -117,7 +122,8 @@ def part_distances(
     """Closest distance of each hand part to the object in one or several poses, 0 at contact.
 
     Every box is compared with every cell's centre; in the nearest cells of each part, with every
-    patch's middle; and the nearest patch is measured as the flat piece that it is.
+    patch's middle; and the nearest patch is measured as the flat piece that it is. The nearest
+    cells are those of the first pose, so others must be near it: a centimetre, not more.
 
     Args:
         link_frames: (num_envs, num_links, 3, 4) rotation and position [m], world.
@@ -131,41 +137,51 @@ def part_distances(
     num_envs, num_poses = obj_frames.shape[:2]
     num_cells, num_patches = surfaces.centres.shape[2], surfaces.middles.shape[1] // 3
     num_boxes = len(boxes.link)
-    num_parts = num_boxes // boxes.width
     frames = _object_to_boxes(link_frames, boxes, obj_frames)
-    rows = frames.view(num_envs, -1, 4)
-    far = torch.baddbmm(rows[..., 3:], rows[..., :3], surfaces.centres)
+    first = frames.view(num_envs, -1, num_poses, 4)[:, :, 0]
+    far = torch.baddbmm(first[..., 3:], first[..., :3], surfaces.centres)
     gaps = box_distance_squared(far.view(-1, num_boxes, 3, num_cells), boxes.half_size)
     near = gaps.view(-1, boxes.width * num_cells).topk(NEAREST_CELLS, largest=False, sorted=False)
-    row = torch.arange(len(near.indices), device=rows.device)[:, None]
+    row = torch.arange(len(near.indices), device=first.device)[:, None]
     # Boxes and cells numbered through all environments; index_select is much faster than [].
     box = (near.indices // num_cells + row * boxes.width).flatten()
-    cell = (near.indices % num_cells + row // (num_poses * num_parts) * num_cells).flatten()
-    frames = frames.view(-1, 3, 4).index_select(0, box)
+    cell = (near.indices % num_cells + row * boxes.width // num_boxes * num_cells).flatten()
+    frames = frames.index_select(0, box).view(-1, 3 * num_poses, 4)
     half_size = boxes.half_size.index_select(0, box % num_boxes)
     middles = surfaces.middles.index_select(0, cell).view(-1, 3, num_patches)
     middles = torch.baddbmm(frames[..., 3:], frames[..., :3], middles)
-    gaps = box_distance_squared(middles, half_size).view(len(row), -1)
-    best = gaps.argmin(1) + row[:, 0] * gaps.shape[1]
+    gaps = box_distance_squared(middles.view(-1, 3, num_poses * num_patches), half_size)
+    gaps = gaps.view(len(row), NEAREST_CELLS, num_poses, num_patches).transpose(1, 2).flatten(2)
+    best = (gaps.argmin(2) + row * gaps.shape[2]).flatten()
     pair = best // num_patches
     patch = cell.index_select(0, pair) * num_patches + best % num_patches
-    frames = frames.index_select(0, pair)
+    frames = _of_pose(frames, pair, num_poses)
     in_box = frames[..., :3] @ surfaces.patches.index_select(0, patch)
     in_box[..., :1] += frames[..., 3:]
     distance = patch_distance(in_box, half_size.index_select(0, pair))
-    return distance.view(num_envs, num_poses, num_parts)
+    return distance.view(num_envs, -1, num_poses).transpose(1, 2)
 
 
 def _object_to_boxes(link_frames: Tensor, boxes: HandBoxes, obj_frames: Tensor) -> Tensor:
-    """(num_envs, num_poses, num_boxes, 3, 4): p_box = turn p_object + shift, the last column."""
+    """(num_envs * num_boxes, 3, num_poses, 4): p_box = turn p_object + shift, the last column."""
+    num_envs, num_poses = obj_frames.shape[:2]
     to_link = link_frames[..., :3].transpose(-1, -2)
     to_link = torch.cat([to_link, -to_link @ link_frames[..., 3:]], -1)
     to_box = boxes.from_link[..., :3] @ to_link.index_select(1, boxes.link)
     to_box[..., 3] += boxes.from_link[..., 3]
-    turn, shift = to_box[..., :3].flatten(1, 2), to_box[..., 3]
-    frames = (turn[:, None] @ obj_frames).view(*obj_frames.shape[:2], -1, 3, 4)
-    frames[..., 3] += shift[:, None]
-    return frames
+    to_box = to_box.view(num_envs, -1, 4)
+    side_by_side = obj_frames.transpose(1, 2).reshape(num_envs, 3, -1)
+    frames = (to_box[..., :3] @ side_by_side).view(num_envs, -1, num_poses, 4)
+    frames[..., 3] += to_box[..., 3:]
+    return frames.view(-1, 3, num_poses, 4)
+
+
+def _of_pose(frames: Tensor, pair: Tensor, num_poses: int) -> Tensor:
+    """(len(pair), 3, 4) frames, (n, 3 * num_poses, 4), of pairs for one pose after the other."""
+    pose = torch.arange(num_poses, device=pair.device)
+    place = (pair.view(-1, num_poses) * num_poses + pose).flatten()
+    by_pose = frames.view(-1, 3, num_poses, 4).transpose(1, 2).reshape(-1, 3, 4)
+    return by_pose.index_select(0, place)
 
 
 def box_distance_squared(points: Tensor, half_size: Tensor) -> Tensor:

@@ -16,6 +16,7 @@ from maniskill_taskgrasp.assets.objects import library
 from maniskill_taskgrasp.assets.objects.geometry import depth_inside
 from maniskill_taskgrasp.assets.objects.model import Part
 from maniskill_taskgrasp.tasks.closing import ConstantClosing
+from maniskill_taskgrasp.tasks.offset import STEP, displaced
 from maniskill_taskgrasp.tasks.sensing import (
     HandBoxes,
     ObjectSurfaces,
@@ -116,11 +117,27 @@ def test_distances_do_not_depend_on_where_the_world_is():
     torch.testing.assert_close(
         felt(links[order], boxes, mixed, obj[order]), here[order], atol=1e-6, rtol=0
     )
-    # Several poses at once, as each by itself.
-    several = torch.stack([obj, moved(obj)], 1)
-    one_by_one = [felt(links, boxes, surfaces, pose) for pose in several.unbind(1)]
+
+
+def test_poses_near_the_first_feel_what_each_would_by_itself():
+    """The cells of the first pose serve all: for steps as the estimate of the object's place takes
+    them that is the same nearly always, and seldom more than a millimetre off."""
+    generator = torch.Generator().manual_seed(2)
+    names, num_envs = ("hammer", "mug", "book", "screwdriver"), 32
+    boxes = boxes_of([(0.02, 0.03, 0.05)] * len(PARTS))
+    models = [library.load(name) for name in names] * (num_envs // len(names))
+    surfaces = ObjectSurfaces.of([surface_of(m) for m in models], torch.device("cpu"))
+    links = random_poses(generator, num_envs, 6, spread=0.1)
+    obj = random_poses(generator, num_envs, spread=0.05)
+    steps = torch.cat([torch.zeros(1, 3), torch.diag(torch.tensor(STEP))])
+    several = displaced(obj[:, None], torch.zeros(1, 3), steps.expand(num_envs, -1, -1))
+    alone = [felt(links, boxes, surfaces, pose) for pose in several.unbind(1)]
     together = part_distances(pose_to_frame(links), boxes, surfaces, pose_to_frame(several))
-    torch.testing.assert_close(together, torch.stack(one_by_one, 1), atol=1e-6, rtol=0)
+    off = (together - torch.stack(alone, 1)).abs()
+    assert (off > 1e-5).float().mean() < 0.05
+    assert (off > 1e-3).float().mean() < 0.005
+    torch.testing.assert_close(together[:, 0], alone[0], atol=1e-6, rtol=0)
+    assert (together[:, 1:] - together[:, :1]).abs().amax((0, 2)).min() > 1e-3  # They do differ.
 
 
 @pytest.mark.parametrize("name", ["mug", "screwdriver", "book"])
