@@ -49,7 +49,11 @@ def arc_cosine(normal: Tensor, pad: Tensor, end: Tensor) -> Tensor:
     Returns:
         (...)
     """
-    along_pad, along_end = (normal * pad).sum(-1), (normal * end).sum(-1)
+    return _arc_cosine((normal * pad).sum(-1), (normal * end).sum(-1))
+
+
+def _arc_cosine(along_pad: Tensor, along_end: Tensor) -> Tensor:
+    """The same from the cosines of the angles to both ends."""
     between = (along_pad >= 0) & (along_end >= 0)
     return torch.where(
         between, torch.hypot(along_pad, along_end), torch.maximum(along_pad, along_end)
@@ -82,10 +86,10 @@ class ContactSurfaces:
             link_forces: (num_envs, num_links, 3) [N] force of the object ON each link, link frame;
                 it points into the link, so the outward contact normal is its negative.
         """
-        force = link_forces.norm(dim=-1)
+        force = torch.linalg.vector_norm(link_forces, dim=-1)
         normal = -link_forces / force.clamp(min=1e-9)[..., None]
-        along_pad = (normal * self._pad).sum(-1)
-        good = arc_cosine(normal, self._pad, self._end) >= math.cos(math.radians(SURFACE_ANGLE))
+        along_pad, along_end = (normal * self._pad).sum(-1), (normal * self._end).sum(-1)
+        good = _arc_cosine(along_pad, along_end) >= math.cos(math.radians(SURFACE_ANGLE))
         # The palm works with its face, whose normal is +y, as that of a finger's pad.
         palm = self.part_of_link == PALM
         good = torch.where(palm, along_pad >= PALM_NORMAL, good)

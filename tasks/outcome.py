@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import torch
 from torch import Tensor
 
@@ -43,15 +45,16 @@ class Outcome:
         self.mean_forces[env_idx] = 0
         self.reachable[env_idx] = reachable
 
-    def record(self, lift: Tensor, link_forces: Tensor, speed: Tensor) -> None:
+    def record(self, lift: Tensor, link_forces: Tensor, touch: Tensor, speed: Tensor) -> None:
         """Take in one control step.
 
         Args:
             lift: (num_envs,) [m] rise of the object.
             link_forces: (num_envs, num_links, 3) [N] in link frames.
+            touch: (num_envs, num_links) [N] their sizes.
             speed: (num_envs,) [m/s] of the object.
         """
-        pressing = (link_forces.norm(dim=-1) >= CONTACT_FORCE).any(1)
+        pressing = (touch >= CONTACT_FORCE).any(1)
         up = (lift >= LIFT_HEIGHT) & pressing
         self.touched |= pressing
         self.max_lift = torch.maximum(self.max_lift, lift)
@@ -76,15 +79,21 @@ class Outcome:
         over = step >= MAX_EPISODE_STEPS
         lifted = self.max_lift >= OFF_TABLE
         lost = over | (tried & (lift < 0.5 * self.max_lift))
-        failure = torch.zeros_like(step)
-        for name, happened in (  # Later ones explain more.
-            ("slipped", lifted & lost),
-            ("dropped", self.was_up & lost),
-            ("not_lifted", over & ~lifted),
-            ("no_contact", tried & ~self.touched),
-            ("unstable", self.wild),
-            ("unreachable", over & ~self.reachable),
-            ("none", self.success),
-        ):
-            failure = torch.where(happened, FAILURES.index(name), failure)
-        return failure
+        happened = {  # Later ones explain more.
+            "slipped": lifted & lost,
+            "dropped": self.was_up & lost,
+            "not_lifted": over & ~lifted,
+            "no_contact": tried & ~self.touched,
+            "unstable": self.wild,
+            "unreachable": over & ~self.reachable,
+            "none": self.success,
+        }
+        ranks, codes = _explanations(tuple(happened), step.device)
+        return codes[(torch.stack(list(happened.values())) * ranks).amax(0)]
+
+
+@cache
+def _explanations(names: tuple[str, ...], device: torch.device) -> tuple[Tensor, Tensor]:
+    """(n, 1) ranks from 1 on, and (n + 1,) places in `FAILURES` by rank, 0 for none of them."""
+    ranks = torch.arange(1, len(names) + 1, device=device)[:, None]
+    return ranks, torch.tensor([0, *map(FAILURES.index, names)], device=device)

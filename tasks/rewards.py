@@ -85,7 +85,7 @@ def centre_term(shift: Tensor) -> Tensor:
         shift: (num_envs, 3) [m, m, rad] displacement (x, y, yaw) that the palm still lacks.
     """
     off = torch.cat([shift[:, :2], YAW_LEVER * shift[:, 2:]], 1)
-    return 1 - torch.tanh(CENTRE_SCALE * off.norm(dim=1))
+    return 1 - torch.tanh(CENTRE_SCALE * torch.linalg.vector_norm(off, dim=1))
 
 
 def reach_term(distances: Tensor, named: Tensor) -> Tensor:

@@ -109,7 +109,7 @@ class HandSenses:
             forces = (rotation @ local_forces[..., None])[..., 0]
         return Reading(
             local_forces=local_forces,
-            touch=local_forces.norm(dim=-1),
+            touch=torch.linalg.vector_norm(local_forces, dim=-1),
             forces=part_forces(forces, self._part_of_link, self._num_parts),
             distances=part_distances(frames, self._boxes, self._surfaces, obj_frame)[:, 0],
             obj_pose=obj_pose,

@@ -30,7 +30,8 @@ def part_forces(link_forces: Tensor, part_of_link: Tensor, num_parts: int) -> Te
         (num_envs, num_parts) [N]
     """
     total = link_forces.new_zeros(len(link_forces), num_parts, 3)
-    return total.index_add_(1, part_of_link, link_forces).norm(dim=-1)
+    total.index_add_(1, part_of_link, link_forces)
+    return torch.linalg.vector_norm(total, dim=-1)
 
 
 @dataclass(frozen=True)

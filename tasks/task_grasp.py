@@ -296,8 +296,8 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             memory.last_action = action.reshape(self.num_envs, -1).clone()
         self._reading = reading = self._senses.read()
         memory.touch = reading.local_forces
-        speed = self.obj.linear_velocity.norm(dim=1)
-        memory.outcome.record(self._lift(), reading.local_forces, speed)
+        speed = torch.linalg.vector_norm(self.obj.linear_velocity, dim=1)
+        memory.outcome.record(self._lift(), reading.local_forces, reading.touch, speed)
         if self._obs == "full":
             step, imagining = self._elapsed_steps, self._senses.imagining
             memory.estimate.update(step, reading, self.nominal_pose, imagining)

@@ -85,7 +85,8 @@ def outcome_after(lifts, force=1.0, speed=0.0):
     forces = torch.zeros(1, 2, 3)
     forces[:, 0, 0] = force
     for lift in lifts:
-        outcome.record(torch.tensor([lift]), forces, torch.tensor([speed]))
+        touch = forces.norm(dim=-1)
+        outcome.record(torch.tensor([lift]), forces, touch, torch.tensor([speed]))
     return outcome
 
 

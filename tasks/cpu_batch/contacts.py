@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from sapien import physx
+
+IMPULSE = physx.PhysxContactPoint.impulse.fget  # Faster than looking the attribute up.
 
 
 class ContactTable:
@@ -87,7 +90,7 @@ class ContactTable:
                     hit = known[bodies] = self._slots_of(*bodies)
                 if hit and (points := contact.points):
                     starts.append(len(impulses))
-                    impulses += [point.impulse for point in points]
+                    impulses.extend(map(IMPULSE, points))
                     hits.append(hit)
         return _sums(impulses, starts, hits, len(self._row_env))
 
@@ -113,7 +116,7 @@ def _sums(
     table = np.zeros((rows, 3), dtype=np.float32)
     if not hits:
         return table
-    points = np.concatenate(impulses).reshape(-1, 3)
+    points = np.frombuffer(b"".join(impulses), dtype=np.float32).reshape(-1, 3)
     contacts = np.add.reduceat(points, starts, axis=0)
     slots = [slot for hit in hits for slot in hit]
     weights = np.repeat(contacts, [len(hit) for hit in hits], axis=0)

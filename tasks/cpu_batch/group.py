@@ -97,7 +97,7 @@ class EnvGroup:
         self._poses = np.zeros((entities, 7), dtype=np.float32)
         self._dynamic_source = _column(dynamic_start) + PACKED_TO_BUFFER
         self._root_source = _column(root_start) + PACKED_TO_BUFFER
-        self._link_source = np.array(link_place, dtype=int)
+        self._link_source = 7 * _column(link_place) + PACKED_TO_BUFFER[:7]
 
     def bind(self, arrays: Arrays) -> None:
         """Take these rows of the buffers and fill them from the simulation."""
@@ -208,11 +208,11 @@ class EnvGroup:
         self._moving_stale = True
         sim = self.arrays
         sim.sim_body[self.dynamic] = self._state[self._dynamic_source]
-        sim.sim_body[self.links, :7] = self._poses[self._link_source][:, PACKED_TO_BUFFER[:7]]
+        sim.sim_body[self.links, :7] = self._poses.take(self._link_source)
         sim.sim_body[self.root_row, 7:] = self._state[self._root_source[:, 7:]]
         sim.sim_body[self.root_row[self._bolted], :7] = self._told_root[self._bolted]
-        sim.sim_qpos[:] = self._state[self._qpos_source]
-        sim.sim_qvel[:] = self._state[self._qvel_source]
+        sim.sim_qpos[:] = self._state.take(self._qpos_source)
+        sim.sim_qvel[:] = self._state.take(self._qvel_source)
 
     def read_moving(self) -> None:
         """Bring the velocities of moving links and the joint accelerations up, one by one."""

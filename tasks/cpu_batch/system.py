@@ -50,7 +50,7 @@ class ImpulseQuery:
     def fill(self, tables: Sequence[np.ndarray]) -> None:
         """Take what this query asks for out of the groups' contact tables."""
         for group, mine, rows, signs in self._parts:
-            self._impulses[mine] = tables[group][rows] * signs
+            self._impulses[mine] = tables[group].take(rows, axis=0) * signs
 
 
 @dataclass
