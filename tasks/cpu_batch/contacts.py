@@ -116,7 +116,7 @@ def _sums(
     table = np.zeros((rows, 3), dtype=np.float32)
     if not hits:
         return table
-    points = np.frombuffer(b"".join(impulses), dtype=np.float32).reshape(-1, 3)
+    points = np.concatenate(impulses).reshape(-1, 3)
     contacts = np.add.reduceat(points, starts, axis=0)
     slots = [slot for hit in hits for slot in hit]
     weights = np.repeat(contacts, [len(hit) for hit in hits], axis=0)
