@@ -148,7 +148,7 @@ def test_prompt_like_text_is_only_text():
         ("The floor hasn't been mopped yet.", "mopping", "mop"),  # A complaint asks for it.
         ("Brush my hair.", "brushing", "hair brush"),  # The tool's name says what it is for.
         ("lft the chair", "lifting", "chair"),  # A verb is meant where a request starts.
-        ("Slide that wrench over to me.", "moving", "wrench"),  # Behind "that" stands a noun.
+        ("Slide that wrench over to me.", "sliding", "wrench"),  # Behind "that" stands a noun.
         ("The bucket is full.", "dumping out", "bucket"),  # A complaint about a state.
         ("There is mud on the rug.", "vacuuming", "vacuum"),  # A complaint about what lies there.
         ("Roll up the towel... the blanket.", "folding", "blanket"),  # Corrected after a pause.

@@ -99,7 +99,8 @@ def test_head_fits_the_lexicon():
     head = load_head()
     assert head.classes == (*load_knowledge().actions, HAND_OVER, NO_ACTION)
     assert head.names == tuple(sorted(load_lexicon().names))
-    assert head.weights.shape == (len(head.classes), DIMENSIONS)
+    assert head.weights.shape == (len(head.classes), len(head.hidden_bias))
+    assert head.hidden_weights.shape == (len(head.hidden_bias), DIMENSIONS)
 
 
 def test_vectors_have_length_one_and_do_not_depend_on_the_batch():

@@ -23,12 +23,12 @@ import torch
 import tyro
 
 from maniskill_taskgrasp.knowledge import load_knowledge
-from maniskill_taskgrasp.language.actions import HAND_OVER, NO_ACTION
+from maniskill_taskgrasp.language.actions import HAND_OVER, NO_ACTION, head_of
 from maniskill_taskgrasp.language.encoder import load_encoder
 from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, Phrase, load_lexicon
-from maniskill_taskgrasp.language.meaning import meanings_of
 from maniskill_taskgrasp.language.objects import PHONING
 from maniskill_taskgrasp.language.situations import load_situations
+from maniskill_taskgrasp.language.text import clean
 from maniskill_taskgrasp.language.verbs import base_of
 from maniskill_taskgrasp.train.instructions import (
     PEOPLE,
@@ -39,9 +39,12 @@ from maniskill_taskgrasp.train.instructions import (
     fill_transfer,
     frames,
 )
-from maniskill_taskgrasp.train.language_decision import dev_features, dev_texts, with_bias
+from maniskill_taskgrasp.train.language_decision import fit_decision
 
 DEFAULT_OUT = Path(__file__).resolve().parent.parent / "assets" / "checkpoints" / "language.npz"
+
+
+RARE = 50  # Sentences of a class below which it weighs no more: "hoding towel" has few.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,16 +57,26 @@ class LanguageConfig:
     """Bare imperatives made of each phrase of the lexicon."""
     framed: int = 2
     """Whole instructions made of each (`train/instructions.py`)."""
-    idle: int = 4000
+    idle: int = 4500
     """Filled sentences of the class "no action of the table"."""
-    transfers: int = 1500
+    transfers: int = 2000
     """Sentences of the class "an object to be handed over"."""
     told: int = 3
     """Sentences made of each situation."""
-    weight_decay: float = 1e-5
-    """L2 penalty on the head's weights."""
-    steps: int = 25
-    """L-BFGS iterations."""
+    hidden: int = 512
+    """Units of the hidden layer."""
+    dropout: float = 0.5
+    """Share of them that is left out at each step."""
+    epochs: int = 12
+    """Passes over the sentences."""
+    batch: int = 256
+    """Sentences of a step."""
+    rate: float = 2e-3
+    """Highest learning rate of AdamW."""
+    weight_decay: float = 0.05
+    """Its weight decay."""
+    smoothing: float = 0.05
+    """Share of a label that is spread over all classes."""
     seed: int = 0
     """Seed of the sentence generator."""
 
@@ -108,7 +121,7 @@ def fill(phrase: Phrase, rng: random.Random) -> str:
 
 
 def make_sentences(config: LanguageConfig) -> tuple[list[str], list[str]]:
-    """Sentences and their actions, deduplicated in order."""
+    """Sentences, cleaned as the front end cleans them, and their actions; no pair twice."""
     phrases = [phrase for found in load_lexicon().phrases.values() for phrase in found]
     rng = random.Random(config.seed)
     pairs: dict[tuple[str, str], None] = {}
@@ -120,7 +133,7 @@ def make_sentences(config: LanguageConfig) -> tuple[list[str], list[str]]:
         *((text, NO_ACTION) for text in frames("chatter")),
         *((fill_idle_frame(rng.choice(phrases), rng), NO_ACTION) for _ in range(config.idle)),
     ):
-        pairs[pair] = None
+        pairs[clean(pair[0]), pair[1]] = None
     return [text for text, _ in pairs], [action for _, action in pairs]
 
 
@@ -150,71 +163,52 @@ def _situation_sentences(config: LanguageConfig, rng: random.Random) -> Iterator
 
 def fit_head(
     vectors: np.ndarray, labels: np.ndarray, classes: int, config: LanguageConfig
-) -> tuple[np.ndarray, np.ndarray]:
-    """Softmax regression with inverse-square-root class weights.
+) -> dict[str, np.ndarray]:
+    """One hidden layer and a softmax, with inverse-square-root class weights.
 
     Args:
         vectors: (n, d) unit sentence vectors.
         labels: (n,) class of each.
         classes: number of classes.
-        config: penalty and iterations.
+        config: size, regularisation and steps.
 
     Returns:
-        (classes, d) weights and (classes,) biases.
+        The arrays of `Head` from hidden_weights to bias, as they are stored.
     """
     torch.manual_seed(config.seed)
-    x = torch.tensor(vectors, dtype=torch.float64)
-    y = torch.tensor(labels)
-    counts = torch.bincount(y, minlength=classes).clamp(min=1).double()
-    weights = torch.zeros(classes, x.shape[1], dtype=torch.float64, requires_grad=True)
-    bias = torch.zeros(classes, dtype=torch.float64, requires_grad=True)
-    solver = torch.optim.LBFGS(
-        [weights, bias], max_iter=config.steps, line_search_fn="strong_wolfe"
+    scale = vectors.shape[1] ** 0.5  # Components of about unit variance suit the learning rate.
+    x, y = torch.tensor(scale * vectors), torch.tensor(labels)
+    first = torch.nn.Linear(x.shape[1], config.hidden)
+    last = torch.nn.Linear(config.hidden, classes)
+    drop = torch.nn.Dropout(config.dropout)
+    weights = torch.bincount(y, minlength=classes).clamp(min=RARE).float().rsqrt()
+    parameters = [*first.parameters(), *last.parameters()]
+    solver = torch.optim.AdamW(parameters, lr=config.rate, weight_decay=config.weight_decay)
+    batches = len(y) // config.batch
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
+        solver, config.rate, total_steps=config.epochs * batches
     )
-    sample_weights = counts.rsqrt()
-
-    def closure() -> torch.Tensor:
-        solver.zero_grad()
-        logits = x @ weights.T + bias
-        loss = torch.nn.functional.cross_entropy(logits, y, weight=sample_weights)
-        loss = loss + config.weight_decay * weights.square().sum()
-        loss.backward()
-        return loss
-
-    solver.step(closure)
-    return weights.detach().numpy(), bias.detach().numpy()
-
-
-def fit_decision(
-    weights: np.ndarray, bias: np.ndarray, classes: list[str], config: LanguageConfig
-) -> tuple[np.ndarray, float]:
-    """Weights of `meaning.features` with their bias, and the share of dev requests they pass.
-
-    Args:
-        weights: (classes, d) of the head.
-        bias: (classes,) of it.
-        classes: their names.
-        config: penalty and iterations.
-    """
-    texts, asked = dev_texts()
-    vectors, situations = encode(texts), encode([s.said for s in load_situations()])
-    meanings = meanings_of(vectors @ weights.T + bias, tuple(classes), vectors @ situations.T)
-    given = dev_features(texts, meanings)
-    two, _ = fit_head(given, asked.astype(np.int64), 2, config)
-    decision = with_bias(two[1] - two[0], given, asked)
-    passed = given[asked] @ decision[:-1] + decision[-1] > 0
-    return decision, float(passed.mean())
+    for _ in range(config.epochs):
+        for rows in torch.randperm(len(y))[: batches * config.batch].split(config.batch):
+            logits = last(drop(torch.relu(first(x[rows]))))
+            loss = torch.nn.functional.cross_entropy(
+                logits, y[rows], weight=weights, label_smoothing=config.smoothing
+            )
+            solver.zero_grad()
+            loss.backward()
+            solver.step()
+            schedule.step()
+    return {
+        "hidden_weights": (scale * first.weight).detach().numpy().astype(np.float16),
+        "hidden_bias": first.bias.detach().numpy(),
+        "weights": last.weight.detach().numpy().astype(np.float16),
+        "bias": last.bias.detach().numpy(),
+    }
 
 
 def encode(texts: list[str]) -> np.ndarray:
-    """(n, d) vectors, in batches of similar length."""
-    encoder = load_encoder()
-    order = sorted(range(len(texts)), key=lambda i: len(texts[i]))
-    out = np.zeros((len(texts), encoder.encode(["a"]).shape[1]), np.float32)
-    for start in range(0, len(order), 64):
-        batch = order[start : start + 64]
-        out[batch] = encoder.encode([texts[i] for i in batch])
-    return out
+    """(n, d) vectors."""
+    return load_encoder().encode(texts)
 
 
 def quantised(vectors: np.ndarray) -> np.ndarray:
@@ -238,26 +232,22 @@ def train(config: LanguageConfig) -> dict[str, object]:
     classes = [*load_knowledge().actions, HAND_OVER, NO_ACTION]
     labels = np.array([classes.index(name) for name in names])
     vectors = encode(texts)
-    weights, bias = fit_head(vectors, labels, len(classes), config)
-    decision, passed = fit_decision(weights, bias, classes, config)
-    fitted = float(((vectors @ weights.T + bias).argmax(1) == labels).mean())
     object_names = sorted(load_lexicon().names)
-    save_atomically(
-        config.out,
-        {
-            "weights": weights.astype(np.float16),
-            "bias": bias.astype(np.float32),
-            "classes": np.array(classes),
-            "decision": decision,
-            "names": np.array(object_names),
-            "name_vectors": quantised(encode(object_names)),
-            "situation_vectors": quantised(encode([s.said for s in load_situations()])),
-        },
-    )
+    arrays = {
+        **fit_head(vectors, labels, len(classes), config),
+        "classes": np.array(classes),
+        "names": np.array(object_names),
+        "name_vectors": quantised(encode(object_names)),
+        "situation_vectors": quantised(encode([s.said for s in load_situations()])),
+    }
+    head = head_of({**arrays, "decision": np.zeros(1)})
+    arrays["decision"], passed = fit_decision(head)
+    save_atomically(config.out, arrays)
+    fitted = head.log_probabilities(vectors).argmax(1) == labels
     return {
         "sentences": len(texts),
         "classes": len(classes),
-        "fitted_top1": round(fitted, 3),
+        "fitted_top1": round(float(fitted.mean()), 3),
         "dev_requests_passed": round(passed, 3),
         "config": {k: str(v) for k, v in asdict(config).items() if k != "out"},
     }

@@ -15,12 +15,15 @@ from maniskill_taskgrasp.language.lexicon import load_lexicon, matches
 from maniskill_taskgrasp.language.words import word_map, word_set
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from maniskill_taskgrasp.language.clauses import Clause
 
 NO_ACTION = "no action of the table"
 """The head's class for everything that is none of the 74 actions."""
 HAND_OVER = "an object to be handed over"
 """Its class for transfers that name no use."""
+TEMPER = 0.7  # What the head's log-odds count for beside those of the phrases.
 PHRASE_BONUS = 6.0  # Log-odds that the most specific matching phrase adds to its action.
 PARTICULAR_BONUS = 8.0  # The same for a phrase of more than a verb: "put down".
 RANK_DISCOUNT = 1.5  # Taken off that bonus for the last phrase of an action's list.
@@ -32,7 +35,7 @@ RESULTS = word_map("results")
 RESULTLESS = word_set("resultless")
 """Verbs that keep a state instead of bringing it about: "hold the door open"."""
 LONGEST_SAID = 160  # Characters of a request beyond which its clause alone is weighed.
-LITERAL_DISCOUNT = 1.0  # What "clean" loses as cleaning where "clean|dishes" says washing.
+LITERAL_DISCOUNT = 2.0  # What "clean" loses as cleaning where "clean|dishes" says washing.
 VAGUE_BONUS = 2.0  # Log-odds of a phrase less specific than the best.
 READINGS = {"clause": 0.65, "said": 0.15, "verb": 0.12, "objects": 0.08}
 """Weights of what is mixed: the clause with its phrases, the whole request by meaning alone, any
@@ -42,10 +45,14 @@ the others fill the top three where it is wrong."""
 
 @dataclass(frozen=True)
 class Head:
-    """Softmax regression on sentence vectors, and the vectors of the object names."""
+    """One hidden layer and a softmax on sentence vectors, and the vectors of the object names."""
 
+    hidden_weights: np.ndarray
+    """(h, d)."""
+    hidden_bias: np.ndarray
+    """(h,)."""
     weights: np.ndarray
-    """(classes, d)."""
+    """(classes, h)."""
     bias: np.ndarray
     """(classes,)."""
     classes: tuple[str, ...]
@@ -57,6 +64,12 @@ class Head:
     """(situations, d), unit length, in the order of `situations.load_situations`."""
     decision: np.ndarray
     """(features + 1,) weights of `meaning.features`, and a bias: is it a request?"""
+
+    def log_probabilities(self, vectors: np.ndarray) -> np.ndarray:
+        """(n, classes) of (n, d) sentence vectors."""
+        hidden = np.maximum(vectors @ self.hidden_weights.T + self.hidden_bias, 0)
+        logits = hidden @ self.weights.T + self.bias
+        return logits - np.logaddexp.reduce(logits, axis=1, keepdims=True)
 
 
 @dataclass(frozen=True)
@@ -77,16 +90,22 @@ class ActionScores:
 def load_head() -> Head:
     """The trained head (`train/language.py`)."""
     with as_file(files("maniskill_taskgrasp.assets") / "checkpoints" / "language.npz") as path:
-        data = np.load(path)
-        return Head(
-            weights=data["weights"].astype(np.float32),
-            bias=data["bias"],
-            classes=tuple(data["classes"].tolist()),
-            names=tuple(data["names"].tolist()),
-            name_vectors=_unit(data["name_vectors"]),
-            situation_vectors=_unit(data["situation_vectors"]),
-            decision=data["decision"],
-        )
+        return head_of(np.load(path))
+
+
+def head_of(data: Mapping[str, np.ndarray]) -> Head:
+    """The head from its stored arrays."""
+    return Head(
+        hidden_weights=data["hidden_weights"].astype(np.float32),
+        hidden_bias=data["hidden_bias"],
+        weights=data["weights"].astype(np.float32),
+        bias=data["bias"],
+        classes=tuple(data["classes"].tolist()),
+        names=tuple(data["names"].tolist()),
+        name_vectors=_unit(data["name_vectors"]),
+        situation_vectors=_unit(data["situation_vectors"]),
+        decision=data["decision"],
+    )
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
@@ -159,9 +178,7 @@ def meaning_logits(texts: list[str]) -> np.ndarray:
     Raises:
         EncoderMissingError: the encoder is not installed.
     """
-    head = load_head()
-    logits = load_encoder().encode(texts) @ head.weights.T + head.bias
-    return logits - np.logaddexp.reduce(logits, axis=1, keepdims=True)
+    return load_head().log_probabilities(load_encoder().encode(texts))
 
 
 def _shares(counts: dict[str, float], classes: tuple[str, ...]) -> np.ndarray | None:
@@ -219,11 +236,11 @@ def score_actions(
         other = said not in ("", clause.text) and len(said) <= LONGEST_SAID
         texts = [clause.text, said] if other else [clause.text]
         readings = meaning_logits(texts)
-        logits, whole = readings[0], np.exp(readings[-1])
+        logits, whole = TEMPER * readings[0], np.exp(readings[-1])
         classes = load_head().classes
     except EncoderMissingError:
         logits = np.zeros(len(classes))
-    no_action = float(np.exp(logits[classes.index(NO_ACTION)]))
+    no_action = float(np.exp(logits[classes.index(NO_ACTION)] / TEMPER))
     logits = logits + np.array([bonus.get(name, 0.0) for name in classes])
     logits = logits + np.array([_tool_bonus(clause, name) for name in classes])
     probabilities = mix_readings(

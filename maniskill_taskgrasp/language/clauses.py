@@ -24,6 +24,7 @@ from maniskill_taskgrasp.language.model import import_spacy
 from maniskill_taskgrasp.language.moods import (
     CARRIERS,
     Mood,
+    is_direct,
     is_framed,
     is_negated,
     is_passive,
@@ -51,6 +52,7 @@ WISHED = frozenset(["have", "like", "love"])
 PREVERBAL = word_set("preverbal")
 RECEIVED_ONLY = word_set("received_only")
 """Verbs that are transfers only with a receiver or a direction ("slide me the cup")."""
+SEARCHING = frozenset(["find", "locate"])
 RESULTS = word_map("results")
 """States that a thing is brought into, with their actions: "push it shut"."""
 
@@ -78,6 +80,8 @@ class Clause:
     """State that the thing is to be in afterwards: "open", "tight"."""
     earlier: bool = False
     """It is to be done before the clause it hangs on: "after washing ..."."""
+    direct: bool = False
+    """It is asked of the hearer, not told as a need: "could you open it?"."""
 
     def role(self, kind: str) -> Role | None:
         """First role of a kind, one that names an object before one that does not."""
@@ -137,14 +141,19 @@ def _start(token: Token, floor: int) -> int:
 def _is_transfer(doc: Doc, token: Token, base: str, clause: Clause) -> bool:
     """Whether the verb asks for the object itself, and no phrase gives it another meaning."""
     verb = token.i
+    if base in NEEDY and clause.result is not None:
+        return False  # "It's the door I want closed".
     if base in NEEDY and base not in TRANSFER_VERBS:
         subject = subject_of(token)
-        person = subject is None or subject.lower_ in PERSONAL
+        nouns = any(t.pos_ in {"NOUN", "PROPN"} for t in doc[:verb])
+        person = subject.lower_ in PERSONAL if subject is not None else not nouns
         wanted = clause.role("target") is not None and person
         plain = base not in WISHED or obligation(token) or doc[verb - 1].lower_ == "me"
         return wanted and plain
     if base not in TRANSFER_VERBS | {"throw"}:
         return False
+    if base in SEARCHING and clause.mood == "wish":
+        return False  # "I still have to find the box" asks nobody for it.
     receiver = verb + 1 < len(doc) and doc[verb + 1].lower_ in RECEIVERS
     receiver = receiver or any(t.lower_ in RECEIVERS and t.dep_ == "pobj" for t in doc[verb:])
     named = {w for m in doc._.mentions for w in m.words.split()}
@@ -311,6 +320,7 @@ def _finish(
         at=token.i,
         result=_result(doc, token.i, high),
         earlier=earlier,
+        direct=is_direct(token),
     )
 
 

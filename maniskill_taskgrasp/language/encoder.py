@@ -51,22 +51,23 @@ class SentenceEncoder:
     def encode(self, texts: list[str]) -> np.ndarray:
         """Mean-pooled, normalised last layer.
 
+        Each text is run on its own: the int8 model scales its activations by the whole batch, so
+        that in company a vector would depend on its neighbours.
+
         Args:
-            texts: n strings; padding never changes a vector by more than rounding.
+            texts: n strings.
 
         Returns:
             (n, DIMENSIONS) float32, each row of length 1.
         """
-        if not texts:
-            return np.zeros((0, DIMENSIONS), np.float32)
-        encoded = self._tokenizer.encode_batch(texts)
-        ids = np.array([e.ids for e in encoded], np.int64)
-        mask = np.array([e.attention_mask for e in encoded], np.int64)
-        inputs = {"input_ids": ids, "attention_mask": mask, "token_type_ids": np.zeros_like(ids)}
-        hidden = self._session.run(None, inputs)[0]
-        weights = mask[:, :, None].astype(np.float32)
-        pooled = (hidden * weights).sum(1) / weights.sum(1)
-        return pooled / np.linalg.norm(pooled, axis=1, keepdims=True)
+        vectors = np.zeros((len(texts), DIMENSIONS), np.float32)
+        for row, encoded in enumerate(self._tokenizer.encode_batch(texts)):
+            ids = np.array([encoded.ids], np.int64)
+            mask, types = np.ones_like(ids), np.zeros_like(ids)
+            inputs = {"input_ids": ids, "attention_mask": mask, "token_type_ids": types}
+            pooled = self._session.run(None, inputs)[0][0].mean(0)
+            vectors[row] = pooled / np.linalg.norm(pooled)
+        return vectors
 
     def words(self, most: int | None = None) -> frozenset[str]:
         """Whole words of the vocabulary, which lists them roughly by frequency.
@@ -94,7 +95,7 @@ def load_encoder() -> SentenceEncoder:
     weights = _data_file(*WEIGHTS, WEIGHTS_SHA256)
     tokenizer = tokenizers.Tokenizer.from_file(str(_data_file(*TOKENIZER, TOKENIZER_SHA256)))
     tokenizer.enable_truncation(MAX_TOKENS)
-    tokenizer.enable_padding()
+    tokenizer.no_padding()
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     session = onnxruntime.InferenceSession(

@@ -33,12 +33,13 @@ if TYPE_CHECKING:
 
     from spacy.tokens import Doc
 
+    from maniskill_taskgrasp.language.actions import Head
     from maniskill_taskgrasp.language.mentions import Mention
     from maniskill_taskgrasp.language.segments import Segment
 
-LIKE_A_SITUATION = 0.6  # Cosine with a situation below which a name alone is asked for itself.
+LIKE_A_SITUATION = 0.7  # Cosine with a situation below which a name alone is asked for itself.
 TOLD_TROUBLE = 0.7  # The same for what is told in the past: "I spilled coffee on the counter".
-CLAUSE_SHARE = 0.2  # Probability of a verb's actions from which its clause is what is asked for.
+CLAUSE_SHARE = 0.25  # Probability of a verb's actions from which its clause is what is asked for.
 
 
 @dataclass(frozen=True)
@@ -69,24 +70,15 @@ def meanings(texts: list[str]) -> list[Meaning]:
         vectors = load_encoder().encode(texts)
     except EncoderMissingError:
         return []
-    logits = vectors @ head.weights.T + head.bias
-    return meanings_of(logits, head.classes, vectors @ head.situation_vectors.T)
+    return meanings_of(vectors, head)
 
 
-def meanings_of(
-    logits: np.ndarray, classes: tuple[str, ...], likeness: np.ndarray
-) -> list[Meaning]:
-    """Meanings from the head's numbers.
-
-    Args:
-        logits: (n, classes) of the head.
-        classes: their names.
-        likeness: (n, situations) cosines.
-    """
-    shares = np.exp(logits - np.logaddexp.reduce(logits, axis=1, keepdims=True))
+def meanings_of(vectors: np.ndarray, head: Head) -> list[Meaning]:
+    """Meanings of (n, d) sentence vectors."""
+    likeness = (vectors @ head.situation_vectors.T).max(axis=1, initial=-1.0)
     return [
-        Meaning(dict(zip(classes, row.tolist(), strict=True)), float(most))
-        for row, most in zip(shares, likeness.max(axis=1, initial=-1.0), strict=True)
+        Meaning(dict(zip(head.classes, row.tolist(), strict=True)), float(most))
+        for row, most in zip(np.exp(head.log_probabilities(vectors)), likeness, strict=True)
     ]
 
 
@@ -108,6 +100,7 @@ def features(
         float(known),
         float(any(c.negated for c in doc._.clauses)),
         float(not verbs),
+        float(np.log(meaning.probabilities[HAND_OVER] + 1e-4)),
     ]
 
 
@@ -116,10 +109,11 @@ HYPOTHETICAL = frozenset(["if", "rather", "suppose", "supposing", "time", "wish"
 
 
 def _tells(meaning: Meaning, doc: Doc) -> bool:
-    """Whether a text only tells what was done: "we folded the towels yesterday"."""
-    past = any(token.tag_ == "VBD" and token.pos_ == "VERB" for token in doc)
+    """Whether a text only tells that an action was done: "we folded the towels yesterday"."""
+    past = {t.i for t in doc if t.tag_ == "VBD" and t.pos_ == "VERB"}
+    done = any(c.at in past and matching_phrases(c) for c in doc._.clauses)
     wished = any(token.lower_ in HYPOTHETICAL for token in doc)
-    return past and not wished and meaning.likeness < TOLD_TROUBLE
+    return done and not wished and meaning.likeness < TOLD_TROUBLE
 
 
 def _forbids(segment: Segment, doc: Doc) -> bool:
@@ -184,7 +178,8 @@ def tasks_by_meaning(segments: list[Segment], docs: list[Doc]) -> Iterator[Task]
         before = tuple(earlier)
         earlier += mentions
         asked = is_request(features(meaning, segment, doc, mentions))
-        if _forbids(segment, doc) or _tells(meaning, doc) or not asked:
+        idle = segment.speaking or _forbids(segment, doc) or _tells(meaning, doc)
+        if idle or not asked:
             continue
         whole = clause_without_verb(doc, mentions, segment.text)
         clause = _asked_clause(doc, meaning)

@@ -52,7 +52,8 @@ def _lookup(tokens: list[Token]) -> tuple[tuple[str, float], ...]:
     lead = " ".join(token.lower_ for token in tokens[:-1])
     for form in _forms(tokens[-1]):
         text = f"{lead} {form}".strip()
-        for variant in (text, text.replace(" - ", "-"), text.replace(" - ", " ")):
+        joined = lead + form if len(tokens) == 2 else text  # "Screw driver".
+        for variant in (text, text.replace(" - ", "-"), text.replace(" - ", " "), joined):
             if variant in names:
                 return names[variant]
     return ()

@@ -109,7 +109,8 @@ def _is_told(verb: Token) -> bool:
     if verb.dep_ == "relcl" and not infinitive:
         wanted = verb.head.lower_ in SOMETHING or is_passive(verb)
         return not (wanted and obligation(verb))  # "Something I can cut it with" says what for.
-    perfect = any(c.lemma_ == "have" and c.dep_ == "aux" for c in verb.children)
+    first = verb.head if verb.dep_ == "conj" and verb.head.tag_ == "VBN" else verb
+    perfect = any(c.lemma_ == "have" and c.dep_ == "aux" for c in first.children)
     if perfect and not marks & {"once", "after", "when"}:
         return True
     if "if" in marks:
@@ -138,8 +139,23 @@ def mood_of(verb: Token) -> Mood:
     if word in ADDRESSEE or word == "'s":
         past = verb.tag_ == "VBD" and word != "you"
         has = verb.lemma_ == "have"
-        return "statement" if (past or has) and not obligation(verb) else "request"
+        goes_on = verb.tag_ in {"VBG", "VBZ"} and word not in {"you", "'s"}  # "Someone's knocking".
+        told = past or has or goes_on
+        return "statement" if told and not obligation(verb) else "request"
     return "request" if obligation(verb) and verb.tag_ not in {"VBG", "VBZ"} else "statement"
+
+
+def is_direct(verb: Token) -> bool:
+    """Whether the verb is asked of the hearer: an imperative, "could you", "I'd like you to"."""
+    if is_framed(verb):
+        return True
+    subject = subject_of(verb)
+    asked_you = any(t.lower_ == "you" for c in carriers_of(verb) for t in c.children)
+    if subject is None:
+        return verb.dep_ == "ROOT" and verb.tag_ == "VB"
+    modal = [c.i for c in verb.children if c.lower_ in MODALS and c.dep_ == "aux"]
+    inverted = bool(modal) and min(modal) < subject.i  # "Could you ...", not "you could ...".
+    return asked_you or (subject.lower_ in ADDRESSEE and inverted)
 
 
 def is_negated(verb: Token) -> bool:

@@ -25,6 +25,7 @@ NEAREST_MINIMUM = 0.72  # Cosine below which a name is not the object that was m
 USED_MINIMUM = 0.4  # Cosine from which an unknown thing is like what people used for the action.
 NAMED_AFTER_MINIMUM = 0.75  # The same for a verb with its target, for a tool that nobody named.
 SITUATION_MINIMUM = 0.4  # Cosine from which a request is like a known situation.
+NEAR_SITUATION = 0.7  # The same for a request that the grammar shows.
 SLIP_SCORE = 0.8  # What one slip leaves of a name's certainty.
 CANDIDATES = 5  # Alternatives that an answer lists.
 CONTENT_ACTIONS = word_set("content_actions")
@@ -191,8 +192,9 @@ def like_what_was_used(text: str, action: str) -> Held | None:
 
 def from_situation(task: Task, action: str) -> Held | None:
     """The object that the likest known situation takes: flashlight for "it's dark in here"."""
-    if not task.meant or task.told is None:
+    if task.told is None:
         return None
+    least = SITUATION_MINIMUM if task.meant else NEAR_SITUATION
     try:
         vector = load_encoder().encode([task.told.said])[0]
     except EncoderMissingError:
@@ -200,7 +202,7 @@ def from_situation(task: Task, action: str) -> Held | None:
     likeness = load_head().situation_vectors @ vector
     known = load_situations()
     rows = [i for i in np.argsort(-likeness) if known[i].action == action]
-    if not rows or likeness[rows[0]] < SITUATION_MINIMUM:
+    if not rows or likeness[rows[0]] < least:
         return None
     name, score = known[rows[0]].object, float(likeness[rows[0]])
     note = f"no object was named: took {name!r}, as for {known[rows[0]].said!r}"
@@ -317,10 +319,14 @@ def _target(task: Task, clause: Clause, action: str) -> Held | None:
 
 def _elsewhere(clause: Clause, action: str) -> Held | None:
     """An object named only as source or place, unless the action puts things there."""
+    target = clause.role("target")
+    named = target is not None and not target.pronoun
     for kind in ("source", "place"):
         role = clause.role(kind)
         if role is None or role.mention is None or action in PLACING_ACTIONS:
             continue
+        if named and kind == "place" and role.certainty < 1 and action in TOOL_ACTIONS:
+            continue  # "The nut on the wheel": neither is held.
         if not is_worked_on(role.mention.objects[0][0], action):
             return from_mention(role.mention)
     return None
@@ -338,7 +344,7 @@ def _spoken_of(task: Task, action: str) -> Held | None:
 def _instead(task: Task, action: str, unknown: Held) -> Held:
     """What to hold where the target is no object of the data: a like thing that is."""
     like = like_what_was_used(unknown.wanted or "", action)
-    return like or from_situation(task, action) or unknown
+    return like or (from_situation(task, action) if task.meant else None) or unknown
 
 
 def choose_object(task: Task, action: str | None) -> Held:
@@ -373,4 +379,4 @@ def choose_object(task: Task, action: str | None) -> Held:
     before = antecedent(task) if target is None else None
     if before is not None:
         return from_mention(before)
-    return from_situation(task, action) or Held(None, 0.0)
+    return (from_situation(task, action) if task.meant else None) or Held(None, 0.0)

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from maniskill_taskgrasp.knowledge import load_knowledge
-from maniskill_taskgrasp.language.lexicon import TOOL_ACTIONS, load_lexicon, matches
-from maniskill_taskgrasp.language.roles import PLACE_WORDS, SOMETHING, Role, governor
+from maniskill_taskgrasp.language.lexicon import (
+    TOOL_ACTIONS,
+    WEAK_TRANSFER_VERBS,
+    load_lexicon,
+    matches,
+)
+from maniskill_taskgrasp.language.roles import PLACE_WORDS, SOMETHING, SOURCE_WORDS, Role, governor
 from maniskill_taskgrasp.language.words import word_set
 
 if TYPE_CHECKING:
@@ -24,6 +30,11 @@ ABSTRACT = word_set("abstract")
 """Things that are asked for but not handed over: "I need help"."""
 GRIPPERS = word_set("grippers")
 """Tools that hold another object in the hand's stead."""
+LONG_TEXT = 18  # Words from which on what leads up to a request is taken for background.
+CONTINUING = ("you ", "and ", "then ")
+"""What a request starts with that only goes on with what was told: "and then put it back"."""
+SEEKING = re.compile(r"where (?:is|are) |(?:is|are) there (?:a|an|any) |got (?:a|an|any) ")
+"""Questions that look for an object."""
 SEE_VERBS = word_set("see_verbs")
 """Verbs that point at something without a task for the hand: "see the hammer?"."""
 
@@ -63,6 +74,12 @@ class Task:
         return self.preparation is not None and self.preparation.clause.transfer
 
     @property
+    def direct(self) -> bool:
+        """Whether it is asked of the hearer, not told as what "you have to do"."""
+        told = [t for t in (self.told, self.preparation) if t is not None]
+        return any(t.clause.direct and not t.said.startswith(CONTINUING) for t in told)
+
+    @property
     def source(self) -> Told:
         told = self.told or self.preparation
         assert told is not None
@@ -84,12 +101,13 @@ def ruled_out(segment: Segment, doc: Doc, mention: Mention) -> bool:
     if segment.negated and all(c.negated for c in clauses):
         return not clauses or clauses[0].verb in USE_VERBS | {"mind"}
     before = [t.lower_ for t in doc[max(0, mention.start - 3) : mention.start]]
-    return ("not" in before and "should" not in before) or before[-3:-1] == ["anything", "but"]
+    denied = ("not" in before and "should" not in before) or before[-2:-1] == ["n't"]
+    return denied or before[-3:-1] == ["anything", "but"]
 
 
 def is_place(doc: Doc, mention: Mention) -> bool:
     """Whether an object is named only as where something is ("the pliers on the bench")."""
-    return mention.start > 1 and governor(doc, mention.start, -1) in PLACE_WORDS
+    return mention.start > 1 and governor(doc, mention.start, -1) in PLACE_WORDS | SOURCE_WORDS
 
 
 def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
@@ -101,7 +119,7 @@ def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
         meant = [m for m in doc._.mentions if not ruled_out(segment, doc, m)]
         before += sorted(meant, key=lambda m: not is_place(doc, m))
     told = []
-    asked_for = [d for s, d in zip(segments, docs, strict=True) if s.text.startswith("where ")]
+    asked_for = [d for s, d in zip(segments, docs, strict=True) if SEEKING.match(s.text)]
     sought = next((m for doc in asked_for for m in doc._.mentions), None)
     for k in order_segments(segments):
         if segments[k].asking:
@@ -186,6 +204,17 @@ def _only_prepares(clause: Clause) -> bool:
     return clause.verb in USE_VERBS or prepares
 
 
+def _takes_out(clause: Clause, following: Told | None) -> bool:
+    """Whether a tool is only got out for what follows: "get the hoover out and do the carpet"."""
+    target = clause.role("target")
+    if following is None or target is None or target.mention is None:
+        return False
+    name, known = target.mention.objects[0][0], load_knowledge().pair_counts
+    phrases = load_lexicon().phrases.get(following.clause.verb, ())
+    used = any((name, p.action) in known for p in phrases if p.action in TOOL_ACTIONS)
+    return used and clause.verb in WEAK_TRANSFER_VERBS and "out" in clause.words
+
+
 def _belongs(told: Told, preparation: Told) -> bool:
     """Whether a request is what a preparing clause was for."""
     clause = told.clause
@@ -198,6 +227,17 @@ def _belongs(told: Told, preparation: Told) -> bool:
     return refers or clause.role("target") is None or _may_use_tool(clause)
 
 
+def without_background(tasks: list[Task], words: int) -> list[Task]:
+    """Tasks of a long text from the first on that is asked of the hearer, else all.
+
+    Args:
+        tasks: in the order of doing.
+        words: of the whole text.
+    """
+    direct = [k for k, task in enumerate(tasks) if task.direct]
+    return tasks[direct[0] :] if direct and words >= LONG_TEXT else tasks
+
+
 def make_tasks(told: list[Told]) -> list[Task]:
     """Requests with their transfers joined; pure transfers stay on their own."""
     tasks: list[Task] = []
@@ -208,7 +248,7 @@ def make_tasks(told: list[Told]) -> list[Task]:
         clause = item.clause
         if clause.verb == "look" and following and any(r.pronoun for r in following.clause.roles):
             continue  # "Look at the rug, vacuum it" only points at it.
-        if clause.transfer or _only_prepares(clause):
+        if clause.transfer or _only_prepares(clause) or _takes_out(clause, following):
             leads = following is not None and _belongs(following, item)
             names_tool = not leads and bool(tasks) and _names_tool(item, tasks[-1])
             if tasks and (names_tool or (clause.transfer and _is_wish_without_tool(tasks[-1]))):

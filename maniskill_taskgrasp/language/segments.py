@@ -35,7 +35,9 @@ RETRACTING = re.compile(
     r"on second thought),?\s+)+"
 )
 """What a speaker says before a request that takes the place of the one before it."""
-NEW_SUBJECT = re.compile(r",\s+(?=(?:i|i'm|i'll|i'd|we|we'll|you|(?:can|could|would|will) you)\s)")
+NEW_SUBJECT = re.compile(
+    r",\s+(?=(?:i|i'm|i'll|i'd|we|we'll|you|(?:can|could|would|will) you|is there|where is)\s)"
+)
 
 STATES = word_map("states")
 """What is wrong with a thing, and what people want done about it: "the hinge squeaks"."""
@@ -72,6 +74,8 @@ class Segment:
     """The framed imperative somewhere inside, for when nothing else is understood."""
     asking: bool = False
     """It asks for nothing to be done: a question for an answer in words, or taken back."""
+    speaking: bool = False
+    """It asks for something that no hand does: "order me a burger"."""
 
 
 def _is_request_start(words: list[str], at: int) -> bool:
@@ -151,6 +155,19 @@ def _inner_request(body: str) -> str | None:
     return None
 
 
+NAMED_FIRST = re.compile(
+    r"(?:a|an|the|my|your|that|some) (?P<name>(?:[\w-]+ ){0,3}?[\w-]+),? "
+    r"(?:so |to (?!the|my|your|a\b)|for [\w-]+ing)"
+)
+"""A thing and what for, without a verb before it: "a cloth, so I can ..."."""
+
+
+def _give(body: str) -> str:
+    """A thing asked for by its name and purpose as the transfer that it is."""
+    named = NAMED_FIRST.match(body)
+    return f"give me {body}" if named and named["name"] in load_lexicon().names else body
+
+
 def strip_retraction(part: str) -> tuple[str, bool]:
     """A request without "no, wait" before it, and whether that was there."""
     said = RETRACTING.match(part)
@@ -168,14 +185,16 @@ def frame(part: str) -> Segment:
         if body.startswith(negator):
             body, negated = body[len(negator) :], True
             break
-    body = body if negated else _move_lead_behind(strip_opener(body))
+    body = body if negated else _give(_move_lead_behind(strip_opener(body)))
     inner = None if negated or ASKING.match(body) else _inner_request(body)
     if _starts_request(body):
         framed = OPENER + ("not " if negated else "") + body
     else:
         framed = "not " + body if negated else body
-    speaking = body.partition(" ")[0] in SPEAKING
-    return Segment(part, framed, negated, order, inner, speaking or bool(ASKING.match(body)))
+    first = body.partition(" ")[0]
+    asking = first in SPEAKING or bool(ASKING.match(body))
+    speaking = first in SPEAKING and first != "forget"  # "Forget the mop, take the vacuum".
+    return Segment(part, framed, negated, order, inner, asking, speaking)
 
 
 SOILED = re.compile(

@@ -9,6 +9,7 @@ from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.encoder import EncoderMissingError, load_encoder
 from maniskill_taskgrasp.language.guard import ENGLISH_WORDS
 from maniskill_taskgrasp.language.lexicon import TRANSFER_VERBS, load_lexicon
+from maniskill_taskgrasp.language.situations import load_situations
 from maniskill_taskgrasp.language.verbs import base_forms
 from maniskill_taskgrasp.language.words import word_set
 
@@ -20,7 +21,7 @@ COMMON = 8000  # Entries of the encoder's vocabulary, most frequent first, that 
 SHORTEST = 3  # Shorter words are left as they are.
 MAX_UNKNOWN = 6  # More unknown words than this are no slips; it also bounds the time.
 EXTRA_WORDS = word_set("extra_words")
-FUSED = frozenset(["the", "it", "this", "that", "my", "up", "down", "with", "off", "out"])
+FUSED = frozenset(["the", "it", "this", "that", "my", "up", "down", "with", "off", "out", "on"])
 """Words that are often typed without the space before them."""
 
 
@@ -67,11 +68,12 @@ def domain_words() -> frozenset[str]:
 
 @cache
 def known_words() -> frozenset[str]:
-    """Words that need no correction; without the encoder's vocabulary only the domain's."""
+    """Words that need no correction; without the encoder's vocabulary only ours."""
+    told = {w.strip(",'") for s in load_situations() for w in s.said.split()}
     try:
-        return domain_words() | load_encoder().words()
+        return domain_words() | told | load_encoder().words()
     except EncoderMissingError:
-        return domain_words()
+        return domain_words() | told
 
 
 @cache
@@ -97,6 +99,39 @@ def _by_length() -> dict[int, tuple[tuple[str, int], ...]]:
     for word in sorted(domain_words()):
         lengths.setdefault(len(word), []).append((word, _letters(word)))
     return {n: tuple(words) for n, words in lengths.items()}
+
+
+SOUNDS = (
+    ("ph", "f"), ("wr", "r"), ("kn", "n"), ("gh", ""), ("ck", "k"), ("qu", "kw"), ("x", "ks"),
+    ("c", "k"), ("z", "s"), ("ie", "i"), ("ei", "i"), ("ea", "e"), ("y", "i"),
+)  # fmt: skip
+"""Spellings that sound alike, as they are replaced one after the other."""
+MOST_BY_SOUND = 3  # Slips that a word which sounds right may have.
+
+
+def sound(word: str) -> str:
+    """Roughly how a word sounds: "plyers" like "pliers", "vaccume" like "vacuum"."""
+    for spelling, heard in SOUNDS:
+        word = word.replace(spelling, heard)
+    return re.sub(r"(.)\1+", r"\1", re.sub(r"(?<=..)e$", "", word))
+
+
+@cache
+def _by_sound() -> dict[str, tuple[str, ...]]:
+    sounds: dict[str, list[str]] = {}
+    for word in sorted(domain_words()):
+        if len(word) > SHORTEST:
+            sounds.setdefault(sound(word), []).append(word)
+    return {heard: tuple(words) for heard, words in sounds.items()}
+
+
+def _sounding(word: str) -> str | None:
+    """The domain word that sounds like what was typed."""
+    alike = [
+        (slip_distance(word, other, MOST_BY_SOUND) - (other in likely_words()), other)
+        for other in _by_sound().get(sound(word), ())
+    ]
+    return min(alike)[1] if alike and min(alike)[0] <= MOST_BY_SOUND else None
 
 
 def _cost(word: str, candidate: str, distance: int) -> float:
@@ -153,7 +188,8 @@ def correct(text: str) -> tuple[str, tuple[str, ...]]:
         core = piece.strip(".,!?;:'-")
         unknown = core.isascii() and core.isalpha() and core not in known_words()
         if unknown and len(core) >= SHORTEST and len(notes) < MAX_UNKNOWN:
-            fixed = _two_words(core) or nearest_word(core, verb=not words)
+            near = _two_words(core) or nearest_word(core, verb=not words)
+            fixed = near or _sounding(core)
             if fixed:
                 notes.append(f"read {core!r} as {fixed!r}")
                 piece = piece.replace(core, fixed)

@@ -96,7 +96,7 @@ def clean(text: str) -> str:
     for phrase, plain in IDIOMS.items():
         if phrase in text:
             text = re.sub(rf"\b{re.escape(phrase)}\b", plain, text)
-    text = SELF_CORRECTION.sub("", text)
+    text = GOT.sub("give me ", LEAD.sub("please ", SELF_CORRECTION.sub("", text)))
     text = re.sub(r"\s+", " ", text)
     text = re.sub(r"\s+([.,;:!?])", r"\1", text)
     return re.sub(r",[\s,]*,", ",", text).strip(" ,")
@@ -110,6 +110,20 @@ def split_sentences(text: str) -> list[str]:
     return [part.strip(" ,.:-'") for part in parts if re.search(r"\w", part)]
 
 
+LEAD = re.compile(
+    r"\b(?:(?:what|all) (?:i|we)(?:'d| would)? (?:really )?(?:like|want|need|ask)(?: (?:of|from))?"
+    r"(?: you)?(?: (?:to do|now|first))? is(?: for you)?(?: to)?|the (?:first|next|only|main) "
+    r"(?:job|task|thing|step)(?: to do)?(?: now)? is(?: for you)?(?: to)?|"
+    r"the (?:plan|idea) is(?: for you)? to|"
+    r"(?:what|which)(?: \w+)? (?:would|do|should|can|could) (?:you|we|i) (?:use|take) to|"
+    r"(?:(?:can|could|would|will) you )?(?:please )?show (?:me|us) how (?:to|you|you would|i can)|"
+    r"(?:and )?who (?:is going|wants|is supposed) to|"
+    r"when (?:are you going to|will you)(?: finally)?"
+    r") (?!(?:a|an|the|my|your|some|that|this|one|for|be|you)\b)"
+)
+"""What leads up to the request itself: "what I'd like you to do is put", "who's going to"."""
+GOT = re.compile(r"^(?:have you |you |anybody |anyone )?got (?=(?:a|an|any|some)\b)")
+"""Asks for a thing: "got any tape?"."""
 WALK = re.compile(
     r"(?:go|walk|come|head|run) (?:(?:over|back|up|down|out|in) )?(?:to|into) (?:the|my|your) "
     r"(?:[\w-]+ ){0,2}?[\w-]+(?:,| and| then)+ (?=\w)"

@@ -19,7 +19,14 @@ from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, load_lexicon
 from maniskill_taskgrasp.language.meaning import tasks_by_meaning
 from maniskill_taskgrasp.language.model import load_model
 from maniskill_taskgrasp.language.objects import Held, antecedent, choose_object
-from maniskill_taskgrasp.language.plan import Task, alone, contradiction, make_tasks, tell
+from maniskill_taskgrasp.language.plan import (
+    Task,
+    alone,
+    contradiction,
+    make_tasks,
+    tell,
+    without_background,
+)
 from maniskill_taskgrasp.language.segments import (
     frame,
     request_of_state,
@@ -78,7 +85,7 @@ def understand(text: str, object_override: str | None = None) -> Instruction | R
     if isinstance(result, Rejected):
         doubtful = result.kind in {"no_action", "off_topic"}
     else:
-        doubtful = any(note.startswith(BY_MEANING) for note in result.notes)
+        doubtful = is_guess(result)
     if doubtful:
         again, more = correct_verb(corrected, 0)
         if more:
@@ -108,17 +115,18 @@ def understand_clean(
     bare = bare_name(cleaned)
     if bare is not None and object_override is None:
         return bare_request(text, cleaned, bare, notes)
-    answers = [answer(task, text, object_override) for task in make_tasks(told)]
-    if not answers:
-        told = tell(segments, read_inner(segments, docs))
-        answers = [answer(task, text, object_override) for task in make_tasks(told)]
+    tasks = make_tasks(told) or make_tasks(tell(segments, read_inner(segments, docs)))
+    tasks = without_background(tasks, len(cleaned.split()))
+    answers = [answer(task, text, object_override) for task in tasks]
     refused = answers
     if not any(isinstance(a, Instruction) for a in answers):
         meant = next(filter(None, map(request_of_state, split_sentences(cleaned))), None)
         if meant is not None:
             notes = (*notes, f"took the complaint as {meant!r}")
             return understand_clean(text, meant, notes, object_override)
-        answers = [answer(t, text, object_override) for t in tasks_by_meaning(segments, docs)]
+    if all(isinstance(a, Rejected) or is_guess(a) for a in answers):
+        others = [answer(t, text, object_override) for t in tasks_by_meaning(segments, docs)]
+        answers = others if any(isinstance(a, Instruction) for a in others) else answers
     if not any(isinstance(a, Instruction) for a in answers):
         return explain_refusal(text, refused + answers, docs)
     understood = [a for a in answers if isinstance(a, Instruction)]
@@ -127,6 +135,11 @@ def understand_clean(
         a for a in answers[first + 1 :] if isinstance(a, Instruction) or a.kind == "no_object"
     )
     return finish(understood[0], text, later, notes)
+
+
+def is_guess(result: Instruction) -> bool:
+    """Whether no listed phrase names the action."""
+    return any(note.startswith(BY_MEANING) for note in result.notes)
 
 
 def bare_name(cleaned: str) -> str | None:
