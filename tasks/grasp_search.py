@@ -31,9 +31,11 @@ SCOOP = np.array([0.0, -0.018, 0.0, 0.25, 0.0, 0.0])  # Palm lower, fingers down
 GOOD_START = 0.5  # Share of trials in lift and form from which a search stays near its start.
 GOOD_END = 0.8  # Share below which what came of a good start is not good enough.
 NEAR, WIDE = 0.4, 1.0  # Spread of the first generation around a good and a poor start.
-FINALISTS = 8  # Candidates that are tried again after a wide search.
+FINALISTS = 16  # Candidates that are tried again after a search.
+KEPT = 4  # One in so many of them goes on to the next round.
+ROUNDS = 2  # In which one of the finalists is left.
 RIVALS = 3  # Poor starts that share the first generation.
-WIDE_SEARCHES = 3  # At most, each from other starts, until one comes to something.
+WIDE_SEARCHES = 2  # At most, each from other starts, until one comes to something.
 PROVEN = 0.95  # Share of trials in lift and form at which a start needs no search.
 HOPELESS = 2.5  # Score below which nothing was even lifted.
 ENOUGH = 5.1  # Mean score of a generation of which nearly all lift in form.
@@ -61,10 +63,11 @@ class SearchBudget:
 
     @property
     def trials(self) -> int:
-        """Most simulated grasps: starts, a check of the best, search about it, which of the two;
-        then wide searches, with finalists, search about the winner, and a choice, each."""
-        wide = self.generations + self.first + self.narrow + 1
-        return self.num_envs * (self.narrow + 3 + WIDE_SEARCHES * wide)
+        """Most simulated grasps: starts, a check of the best, and a search about it; then wide
+        searches with a search about what each found. Searches end with rounds and a check."""
+        narrow = self.narrow + ROUNDS + 1
+        wide = self.generations + self.first - 1 + ROUNDS
+        return self.num_envs * (2 + narrow + WIDE_SEARCHES * (wide + narrow))
 
     @property
     def narrow(self) -> int:
@@ -82,6 +85,16 @@ class SearchResult:
     """Train object whose stored grasp the search started from; "rule" for the bounding box."""
     spent: int
     """Simulated grasps of this search."""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A grasp with what it did in fresh trials."""
+
+    numbers: Array
+    """(14,) six of the pregrasp, eight of `PostureSpace`."""
+    lift: float
+    both: float
 
 
 class GraspSearch:
@@ -112,19 +125,17 @@ class GraspSearch:
         row = np.arange(self._budget.num_envs) % len(starts)
         _, both, score = self._try(starts[row], whole=True)
         order = np.argsort([-score[row == i].mean() for i in range(len(starts))], kind="stable")
-        best = starts[order[0]]
-        lifted, held, _ = self._try(np.tile(best, (self._budget.num_envs, 1)), whole=True)
-        good = both[row == order[0]].mean() >= GOOD_START and held.mean() >= GOOD_START
-        if good and held.mean() < PROVEN:
-            best, lifted, held = self._better(best, self._narrow(best))
+        best = self._checked(starts[order[0]])
+        good = both[row == order[0]].mean() >= GOOD_START and best.both >= GOOD_START
+        if good and best.both < PROVEN:
+            best = self._narrow(best, best.numbers)
         for again in range(WIDE_SEARCHES):
-            if held.mean() >= (GOOD_END if good or again else PROVEN):
+            if best.both >= (GOOD_END if good or again else PROVEN):
                 break
             rivals = starts[np.roll(order, -RIVALS * again)[:RIVALS]]
-            centre = self._finalist(self._wide(rivals))
-            best, lifted, held = self._better(best, self._narrow(centre))
+            best = self._narrow(best, self._wide(rivals))
         return SearchResult(
-            self._grasp(best, lifted, held),
+            self._grasp(best),
             names[order[0]],
             self._batches * self._budget.num_envs,
         )
@@ -160,7 +171,7 @@ class GraspSearch:
         return np.random.default_rng([self._budget.seed, self._batches])
 
     def _wide(self, starts: Array) -> Array:
-        """(FINALISTS, 14) from several poor starts: where the search came to, the best it met."""
+        """(14,) the best that was met from several poor starts."""
         mean, history = cross_entropy(
             lambda candidates: self._try(candidates, whole=False)[2],
             starts,
@@ -172,21 +183,11 @@ class GraspSearch:
             enough=ENOUGH,
             hopeless=HOPELESS,
         )
-        order = np.argsort(-history[:, -1], kind="stable")[: FINALISTS - 1]
-        return np.concatenate([mean[None], history[order, :-1]])
+        return self._race([mean], history)
 
-    def _finalist(self, finalists: Array) -> Array:
-        """The best of some candidates in fresh trials of all the time there is.
-
-        Between narrow basins the mean of good grasps is none, and one lucky trial proves nothing.
-        """
-        row = np.arange(self._budget.num_envs) % len(finalists)
-        score = self._try(finalists[row], whole=True)[2]
-        return finalists[np.argmax([score[row == i].mean() for i in range(len(finalists))])]
-
-    def _narrow(self, centre: Array) -> Array:
-        """Where a search about one grasp comes to."""
-        return cross_entropy(
+    def _narrow(self, best: Checked, centre: Array) -> Checked:
+        """Where a search about one grasp comes to, if it is better than the best so far."""
+        mean, history = cross_entropy(
             lambda candidates: self._try(candidates, whole=True)[2],
             centre[None],
             self._space(NEAR),
@@ -194,15 +195,31 @@ class GraspSearch:
             population=self._budget.num_envs,
             generations=self._budget.narrow,
             enough=ENOUGH,
-        )[0]
+        )
+        found = self._checked(self._race([best.numbers, centre, mean], history))
+        return max(best, found, key=lambda grasp: (grasp.both, grasp.lift))
 
-    def _better(self, start: Array, refined: Array) -> tuple[Array, Array, Array]:
-        """The better of two in fresh trials, half of them each: numbers, lifted, in form."""
-        row = np.arange(self._budget.num_envs) % 2
-        lifted, held, _ = self._try(np.array([start, refined])[row], whole=True)
-        won = [(held[row == i].mean(), lifted[row == i].mean()) for i in (0, 1)]
-        best = 1 if won[1] >= won[0] else 0
-        return (start, refined)[best], lifted[row == best], held[row == best]
+    def _race(self, known: list[Array], history: Array) -> Array:
+        """The best of some candidates and of those that a search liked most, in fresh trials.
+
+        Between narrow basins the mean of good grasps is none, and one lucky trial proves nothing:
+        those that do well in a few trials are tried more often.
+        """
+        count = min(FINALISTS, self._budget.num_envs) - len(known)
+        liked = np.argsort(-history[:, -1], kind="stable")[:count]
+        rivals = np.concatenate([known, history[liked, :-1]])
+        while len(rivals) > 1:
+            row = np.arange(self._budget.num_envs) % len(rivals)
+            score = self._try(rivals[row], whole=True)[2]
+            order = np.argsort([-score[row == i].mean() for i in range(len(rivals))], kind="stable")
+            rivals = rivals[order[: len(rivals) // KEPT or 1]]
+        return rivals[0]
+
+    def _checked(self, numbers: Array) -> Checked:
+        """What a grasp does in fresh trials."""
+        many = np.tile(numbers, (self._budget.num_envs, 1))
+        lifted, held, _ = self._try(many, whole=True)
+        return Checked(numbers, float(lifted.mean()), float(held.mean()))
 
     def _space(self, spread: float) -> SearchSpace:
         return SearchSpace(
@@ -212,7 +229,8 @@ class GraspSearch:
             floor=np.concatenate([PREGRASP_FLOOR, POSTURE_FLOOR]),
         )
 
-    def _grasp(self, numbers: Array, lifted: Array, held: Array) -> Grasp:
+    def _grasp(self, best: Checked) -> Grasp:
+        numbers = best.numbers
         preshape, closing = self._posture.expand(numbers[None, 6:])
         placement = self._placement
         return Grasp(
@@ -225,7 +243,7 @@ class GraspSearch:
             pregrasp=tuple(np.round(numbers[:6], 5).tolist()),
             preshape=tuple(np.round(preshape[0], 4).tolist()),
             closing=tuple(np.round(closing[0], 4).tolist()),
-            lift=round(float(lifted.mean()), 4),
-            both=round(float(held.mean()), 4),
-            trials=len(lifted),
+            lift=round(best.lift, 4),
+            both=round(best.both, 4),
+            trials=self._budget.num_envs,
         )

@@ -112,11 +112,11 @@ def test_a_search_counts_its_trials_and_stays_in_bounds(monkeypatch):
     monkeypatch.setattr(grasp_search, "PROVEN", 1.1)  # No start is so good.
     budget = SearchBudget(generations=1, num_envs=8)
     found = own_search.search("screwdriver", PAD, "auto", budget)
-    assert sum(spent) == found.spent <= budget.trials == 152
+    assert sum(spent) == found.spent <= budget.trials == 176
     pregrasp = np.array(found.grasp.pregrasp)
     assert (pregrasp >= PREGRASP_LOWER).all()
     assert (pregrasp <= PREGRASP_UPPER).all()
-    assert found.grasp.trials == 4
+    assert found.grasp.trials == 8
 
 
 def test_a_wide_search_that_came_to_little_is_repeated_from_other_starts(monkeypatch):
@@ -124,7 +124,7 @@ def test_a_wide_search_that_came_to_little_is_repeated_from_other_starts(monkeyp
 
     def wide(self, starts):
         rivals.append(starts)
-        return starts
+        return starts[0]
 
     monkeypatch.setattr(grasp_search, "PROVEN", 1.1)  # No grasp is so good.
     monkeypatch.setattr(grasp_search, "GOOD_END", 1.1)
@@ -132,4 +132,3 @@ def test_a_wide_search_that_came_to_little_is_repeated_from_other_starts(monkeyp
     own_search.search("screwdriver", PAD, "auto", SearchBudget(generations=1, num_envs=16))
     assert len(rivals) == grasp_search.WIDE_SEARCHES
     assert not np.allclose(rivals[0], rivals[1])
-    assert not np.allclose(rivals[1], rivals[2])
