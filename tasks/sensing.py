@@ -14,7 +14,7 @@ from maniskill_taskgrasp.agents.hand import PARTS
 from maniskill_taskgrasp.agents.robot_model import Box, Primitive, rotation
 from maniskill_taskgrasp.tasks.surface import Surface
 
-NEAREST_CELLS = 3  # Cells of the object's surface that are looked at closely for each part.
+NEAREST_CELLS = 4  # Cells of the object's surface that are looked at closely for each part.
 NOWHERE = 1000.0  # [m] away are boxes that only fill a part up.
 
 
