@@ -23,9 +23,11 @@ from maniskill_taskgrasp.language.mentions import BEFORE_NOUN
 from maniskill_taskgrasp.language.model import import_spacy
 from maniskill_taskgrasp.language.moods import (
     CARRIERS,
+    SELF,
     Mood,
     is_direct,
     is_framed,
+    is_inverted,
     is_negated,
     is_passive,
     mood_of,
@@ -154,11 +156,15 @@ def _is_transfer(doc: Doc, token: Token, base: str, clause: Clause) -> bool:
         return False
     if base in SEARCHING and clause.mood == "wish":
         return False  # "I still have to find the box" asks nobody for it.
+    subject = subject_of(token)
+    if base == "get" and subject is not None and subject.lower_ in SELF and is_inverted(token):
+        return True  # "Could I get another towel?"
     receiver = verb + 1 < len(doc) and doc[verb + 1].lower_ in RECEIVERS
     receiver = receiver or any(t.lower_ in RECEIVERS and t.dep_ == "pobj" for t in doc[verb:])
     named = {w for m in doc._.mentions for w in m.words.split()}
     for phrase in load_lexicon().phrases.get(base, ()):
         meant = phrase.specificity > 1 and matches(phrase, clause.words, frozenset(clause.words))
+        meant = meant and not phrase.nouns.union(phrase.words) & {"to", *RECEIVERS}
         if meant and phrase.words and doc[min(verb + 1, len(doc) - 1)].lower_ == "them":
             return False  # "Throw them away": what is thrown, not who gets it.
         if meant and not (receiver and (not phrase.nouns or phrase.nouns & named)):

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from maniskill_taskgrasp.language.segments import Segment
 
 LIKE_A_SITUATION = 0.7  # Cosine with a situation below which a name alone is asked for itself.
-TOLD_TROUBLE = 0.7  # The same for what is told in the past: "I spilled coffee on the counter".
+MEANT = 3  # Classes, the likeliest, that a text may mean.
 CLAUSE_SHARE = 0.25  # Probability of a verb's actions from which its clause is what is asked for.
 
 
@@ -109,11 +109,17 @@ HYPOTHETICAL = frozenset(["if", "rather", "suppose", "supposing", "time", "wish"
 
 
 def _tells(meaning: Meaning, doc: Doc) -> bool:
-    """Whether a text only tells that an action was done: "we folded the towels yesterday"."""
-    past = {t.i for t in doc if t.tag_ == "VBD" and t.pos_ == "VERB"}
-    done = any(c.at in past and matching_phrases(c) for c in doc._.clauses)
+    """Whether a text only tells that the action was done: "we folded the towels yesterday".
+
+    Another verb in the past tells of trouble: "the cat knocked the pot over".
+    """
+    already = any(token.lower_ == "already" for token in doc)
+    tags = {"VBD", "VBN"} if already else {"VBD"}
+    past = {t.i for t in doc if t.tag_ in tags and t.pos_ == "VERB"}
+    likely = set(sorted(meaning.probabilities, key=meaning.probabilities.__getitem__)[-MEANT:])
+    done = any(c.at in past and likely & set(matching_phrases(c)) for c in doc._.clauses)
     wished = any(token.lower_ in HYPOTHETICAL for token in doc)
-    return done and not wished and meaning.likeness < TOLD_TROUBLE
+    return done and not wished
 
 
 def _forbids(segment: Segment, doc: Doc) -> bool:
@@ -171,6 +177,7 @@ def tasks_by_meaning(segments: list[Segment], docs: list[Doc]) -> Iterator[Task]
         docs: their parses.
     """
     earlier: list[Mention] = []
+    speaking = False
     for segment, doc, meaning in zip(
         segments, docs, meanings([s.text[:LONGEST_SAID] for s in segments]), strict=False
     ):
@@ -178,7 +185,8 @@ def tasks_by_meaning(segments: list[Segment], docs: list[Doc]) -> Iterator[Task]
         before = tuple(earlier)
         earlier += mentions
         asked = is_request(features(meaning, segment, doc, mentions))
-        idle = segment.speaking or _forbids(segment, doc) or _tells(meaning, doc)
+        speaking = segment.speaking or (speaking and segment.text.startswith("and "))
+        idle = speaking or _forbids(segment, doc) or _tells(meaning, doc)
         if idle or not asked:
             continue
         whole = clause_without_verb(doc, mentions, segment.text)

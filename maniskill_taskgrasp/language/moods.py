@@ -99,6 +99,8 @@ def is_undone(verb: Token) -> bool:
     """Whether the words complain that something is not done: "has not been rinsed yet"."""
     words = {child.lower_ for child in verb.children}
     lately = words & {"yet", "still", "been"}
+    if "nobody" in words and any(c.lemma_ == "have" and c.dep_ == "aux" for c in verb.children):
+        return True  # "Nobody has swept the floor".
     return is_passive(verb) and bool(words & NEGATIONS) and bool(lately)
 
 
@@ -135,7 +137,8 @@ def mood_of(verb: Token) -> Mood:
         asks_you = any(t.lower_ == "you" for c in carriers_of(verb) for t in c.children)
         if asks_you:
             return "request"
-        return "wish" if obligation(verb) else "statement"
+        maybe = any(c.lower_ in {"might", "may"} for c in verb.children) and not is_inverted(verb)
+        return "wish" if obligation(verb) and not maybe else "statement"
     if word in ADDRESSEE or word == "'s":
         past = verb.tag_ == "VBD" and word != "you"
         has = verb.lemma_ == "have"
@@ -143,6 +146,13 @@ def mood_of(verb: Token) -> Mood:
         told = past or has or goes_on
         return "statement" if told and not obligation(verb) else "request"
     return "request" if obligation(verb) and verb.tag_ not in {"VBG", "VBZ"} else "statement"
+
+
+def is_inverted(verb: Token) -> bool:
+    """Whether a modal stands before the subject: "could you ...", not "you could ..."."""
+    subject = subject_of(verb)
+    modal = [c.i for c in verb.children if c.lower_ in MODALS and c.dep_ == "aux"]
+    return subject is not None and bool(modal) and min(modal) < subject.i
 
 
 def is_direct(verb: Token) -> bool:
@@ -153,9 +163,7 @@ def is_direct(verb: Token) -> bool:
     asked_you = any(t.lower_ == "you" for c in carriers_of(verb) for t in c.children)
     if subject is None:
         return verb.dep_ == "ROOT" and verb.tag_ == "VB"
-    modal = [c.i for c in verb.children if c.lower_ in MODALS and c.dep_ == "aux"]
-    inverted = bool(modal) and min(modal) < subject.i  # "Could you ...", not "you could ...".
-    return asked_you or (subject.lower_ in ADDRESSEE and inverted)
+    return asked_you or (subject.lower_ in ADDRESSEE and is_inverted(verb))
 
 
 def is_negated(verb: Token) -> bool:
@@ -174,7 +182,7 @@ def is_negated(verb: Token) -> bool:
         return True
     head = verb.head
     if head.head.lemma_ in FORBIDDING and head.pos_ == "ADP":
-        return True
+        return all(c.lower_ != "what" for c in head.head.children)  # "What stops you from ...?"
     if verb.dep_ in {"pcomp", "pobj"} and head.pos_ in {"ADP", "SCONJ"}:
         lead = verb.doc[head.i - 1].lower_ if head.i else ""
         return head.lower_ == "without" or lead in {"instead", "rather"}

@@ -142,7 +142,7 @@ def from_words(words: str) -> Held:
         ranked = nearest(words)
     except EncoderMissingError:
         return Held(None, 0.0, wanted=words)
-    name, score = ranked[0]
+    name, score = ranked[0] if ranked else ("", 0.0)  # None is near "metal" but what has it.
     if score < NEAREST_MINIMUM:
         return Held(None, score, ranked, wanted=words)
     note = f"no object is called {words!r}: took the nearest, {name!r}"
@@ -373,7 +373,7 @@ def choose_object(task: Task, action: str | None) -> Held:
         spoken = _spoken_of(task, action) or named_after(clause) or tool_in_verb(clause, action)
         return spoken or from_situation(task, action) or from_data(action)
     if target is not None and not target.pronoun:
-        held = named_after(clause) or from_words(target.text)
+        held = named_after(clause) or tool_in_verb(clause, action) or from_words(target.text)
         found = held.name is not None
         return held if found else _instead(task, action, held)
     before = antecedent(task) if target is None else None

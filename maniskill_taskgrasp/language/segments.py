@@ -147,7 +147,7 @@ def _inner_request(body: str) -> str | None:
     """An imperative inside a segment that does not start with one: "task three open the door"."""
     words = body.split()
     for at in range(1, len(words)):
-        told = words[at - 1] in TELLING_WORDS
+        told = words[at - 1] in TELLING_WORDS | DETERMINERS
         denied = any(w in {"not", "never"} or w.endswith("n't") for w in words[:at])
         starts = words[at] in load_lexicon().verbs and _is_request_start(words, at)
         if starts and not told and not denied:

@@ -103,17 +103,18 @@ def _by_length() -> dict[int, tuple[tuple[str, int], ...]]:
 
 SOUNDS = (
     ("ph", "f"), ("wr", "r"), ("kn", "n"), ("gh", ""), ("ck", "k"), ("qu", "kw"), ("x", "ks"),
-    ("c", "k"), ("z", "s"), ("ie", "i"), ("ei", "i"), ("ea", "e"), ("y", "i"),
+    ("dg", "g"), ("c", "k"), ("z", "s"), ("y", "i"),
 )  # fmt: skip
 """Spellings that sound alike, as they are replaced one after the other."""
-MOST_BY_SOUND = 3  # Slips that a word which sounds right may have.
+MOST_BY_SOUND = 3  # Slips that a likely word which sounds right may have; others one less.
 
 
 def sound(word: str) -> str:
     """Roughly how a word sounds: "plyers" like "pliers", "vaccume" like "vacuum"."""
     for spelling, heard in SOUNDS:
         word = word.replace(spelling, heard)
-    return re.sub(r"(.)\1+", r"\1", re.sub(r"(?<=..)e$", "", word))
+    vowels = re.sub(r"(?<=.)[aeiou]+", "a", re.sub(r"(?<=..)e$", "", word))
+    return re.sub(r"(.)\1+", r"\1", vowels)
 
 
 @cache
@@ -128,7 +129,7 @@ def _by_sound() -> dict[str, tuple[str, ...]]:
 def _sounding(word: str) -> str | None:
     """The domain word that sounds like what was typed."""
     alike = [
-        (slip_distance(word, other, MOST_BY_SOUND) - (other in likely_words()), other)
+        (slip_distance(word, other, MOST_BY_SOUND) + (other not in likely_words()), other)
         for other in _by_sound().get(sound(word), ())
     ]
     return min(alike)[1] if alike and min(alike)[0] <= MOST_BY_SOUND else None
@@ -225,7 +226,7 @@ def respell_name(words: str) -> str | None:
             longer = meant.startswith(slip) and len(meant) <= len(slip) + 2
             unfinished = longer and meant in likely_words()
             near = slip[0] == meant[0] and slip_distance(slip, meant, 1) == 1
-            common = len(parts) == 1 and slip in common_words()
+            common = len(parts) == 1 and slip in common_words() | domain_words()
             verb = slip in base_forms()
             if (near and not common) or (unfinished and (verb or not common)):
                 return name

@@ -48,6 +48,10 @@ NAMED_MINIMUM = 0.25  # The same where the clause names an object of the data.
 REFUSED_VERBS = word_set("refused_verbs")
 """Verbs that are no task for a hand, whatever their nouns."""
 NO_ACTION_MAXIMUM = 0.5  # Probability of "none of the 74" above which an unknown verb is refused.
+ASKED_BACK = re.compile(r",? (?:could|can|would|will|won't) you$")
+"""A question behind the request: "I can't reach the remote, could you?"."""
+PLEASE_WHERE = re.compile(r"(?P<thing>[\w -]+?),? please[,.] (?:it|they|i)\b")
+"""A thing asked for, and then where it is: "my glasses, please, they're on the desk"."""
 BY_MEANING = "no listed phrase has "
 TRANSFER_NOTE = "the words ask for a transfer, not a use: the object's usual actions decide"
 LIGHTER_NOTE = "the sentence encoder is not installed ({}): only listed phrases are understood"
@@ -55,7 +59,8 @@ LIGHTER_NOTE = "the sentence encoder is not installed ({}): only listed phrases 
 
 def read_segments(text: str) -> tuple[list[Segment], list[Doc]]:
     """Framed segments of a cleaned text, and their parses with mentions and clauses."""
-    parts = [part for sentence in split_sentences(text) for part in split_requests(sentence)]
+    sentences = (ASKED_BACK.sub("", sentence) for sentence in split_sentences(text))
+    parts = [part for sentence in sentences for part in split_requests(sentence)]
     segments: list[Segment] = []
     for part in parts[:MAX_SEGMENTS]:
         request, instead = strip_retraction(part)
@@ -144,6 +149,8 @@ def is_guess(result: Instruction) -> bool:
 
 def bare_name(cleaned: str) -> str | None:
     """The object that is all there is in a text but politeness, None for anything more."""
+    where = PLEASE_WHERE.match(cleaned)
+    cleaned = where["thing"] if where else cleaned
     words = [w.strip(",.!?") for w in cleaned.split()]
     while words and words[0] in FILLERS | {"the", "a", "an", "my", "that", "this"}:
         words = words[1:]
