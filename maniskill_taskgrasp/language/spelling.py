@@ -226,7 +226,8 @@ def respell_name(words: str) -> str | None:
             longer = meant.startswith(slip) and len(meant) <= len(slip) + 2
             unfinished = longer and meant in likely_words()
             near = slip[0] == meant[0] and slip_distance(slip, meant, 1) == 1
-            common = len(parts) == 1 and slip in common_words() | domain_words()
+            known = slip in common_words() or slip in domain_words()
+            common = len(parts) == 1 and known
             verb = slip in base_forms()
             if (near and not common) or (unfinished and (verb or not common)):
                 return name
