@@ -30,7 +30,7 @@ class ScoreConfig:
     """Score the language front end."""
 
     split: Literal[
-        "dev", "test", "fresh", "second", "third", "fourth", "fifth", "sixth", "tenth"
+        "dev", "test", "fresh", "second", "third", "fourth", "fifth", "sixth", "seventh", "tenth"
     ] = "dev"
     """Part of the evaluation set; `fresh` and the numbered ones were written later."""
     matcher: Literal["own", "paper"] = "own"
