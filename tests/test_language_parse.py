@@ -183,3 +183,34 @@ def test_name_alone_and_tales_stay_refused():
     """What names an object is no request by that alone."""
     for text in ("a very heavy hammer", "We folded the towels yesterday.", "Do you have a hammer?"):
         assert isinstance(parse(text), Rejected), text
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "unscrew the lid and simultaneously screw it on",
+        "open the drawer but make sure it remains closed",
+        "turn the key without turning it",
+        "grab the mug without touching it",
+        "fill the bottle while not filling it",
+    ],
+)
+def test_a_request_that_undoes_itself_is_refused(text):
+    answer = parse(text)
+    assert isinstance(answer, Rejected)
+    assert answer.kind == "contradictory"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "wipe the table without touching the vase",
+        "open and then close the jar",
+        "pour the juice without spilling it",
+        "close the jar but leave the lid loose",
+        "push the drawer in, then pull it out",
+        "cut the rope, but don't cut it too short",
+    ],
+)
+def test_a_limit_or_a_sequence_is_no_contradiction(text):
+    assert isinstance(parse(text), Instruction)

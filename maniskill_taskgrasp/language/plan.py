@@ -134,7 +134,8 @@ def tell(segments: list[Segment], docs: list[Doc]) -> list[Told]:
 
 
 def _forbids(told: Told) -> bool:
-    return told.clause.negated and told.clause.mood != "statement"
+    too_much = "too" in told.clause.words  # "Don't cut it too short" limits, it does not forbid.
+    return told.clause.negated and told.clause.mood != "statement" and not too_much
 
 
 def contradiction(told: list[Told]) -> str | None:
@@ -149,6 +150,11 @@ def contradiction(told: list[Told]) -> str | None:
             if same and _tool(yes.clause) == _tool(no.clause):
                 return yes.clause.verb
     return None
+
+
+def asked_verbs(told: list[Told]) -> frozenset[str]:
+    """Verbs that are asked for."""
+    return frozenset(one.clause.verb for one in told if _is_asked(one))
 
 
 def _tool(clause: Clause) -> str | None:

@@ -19,9 +19,11 @@ from maniskill_taskgrasp.language.lexicon import SYNONYM_SCORE, load_lexicon
 from maniskill_taskgrasp.language.meaning import tasks_by_meaning
 from maniskill_taskgrasp.language.model import load_model
 from maniskill_taskgrasp.language.objects import Held, antecedent, choose_object
+from maniskill_taskgrasp.language.opposites import undone
 from maniskill_taskgrasp.language.plan import (
     Task,
     alone,
+    asked_verbs,
     contradiction,
     make_tasks,
     tell,
@@ -113,7 +115,7 @@ def understand_clean(
     """
     segments, docs = read_segments(cleaned)
     told = tell(segments, docs)
-    verb = contradiction(told)
+    verb = contradiction(told) or undone(docs, asked_verbs(told))
     if verb is not None:
         reason = f"{echo(text)} both asks for and forbids {verb!r}: say which of the two"
         return Rejected(text, reason, "contradictory")
