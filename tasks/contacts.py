@@ -38,7 +38,9 @@ class LinkContacts:
         return impulses / self._scene.px.timestep
 
     def _sum_of_contacts(self) -> Tensor:
-        impulses = np.zeros((1, self._num_links, 3), dtype=np.float32)
+        """Sums that do not depend on the order of the contacts, which differs between processes:
+        double precision keeps what single precision would round away."""
+        impulses = np.zeros((1, self._num_links, 3))
         for contact in self._scene.px.get_contacts():
             first, second = (body.entity.per_scene_id for body in contact.bodies)
             if second == self._obj_id and first in self._link_ids:
@@ -49,4 +51,4 @@ class LinkContacts:
                 continue
             for point in contact.points:
                 impulses[0, link] += sign * point.impulse
-        return torch.from_numpy(impulses)
+        return torch.from_numpy(impulses.astype(np.float32))
