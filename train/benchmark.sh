@@ -9,6 +9,7 @@ export OMP_NUM_THREADS=1
 # Grasps searched on train objects -> assets/pregrasps.json (adds to what is there).
 python train/pregrasps.py --per-topology 24 --generations 7 --first 2
 python train/pregrasps.py --remeasure --remeasure-trials 16
+python train/pregrasps.py --per-topology 24 --generations 4 --first 2 --again .8
 
 # The shipped policies' recipe, three seeds each: one track with distances, one with touch alone.
 policy() { # distance, teacher, seed
@@ -30,13 +31,13 @@ table() { # name, flags
     taskgrasp evaluate --seed 2026 --out "$OUT/$1" "${@:2}"
 }
 FOLLOW=(--policy follow --distance exact)
-table table1-own --table paper --search 9 --episodes 100 "${FOLLOW[@]}"
+table table1-own --table paper --search 5 --episodes 100 "${FOLLOW[@]}"
 table table1-stored --table paper --episodes 20 "${FOLLOW[@]}"
-table feasible-own --table feasible --search 2 --episodes 10 "${FOLLOW[@]}"
+table feasible-own --table feasible --search 5 --episodes 10 "${FOLLOW[@]}"
 table feasible-stored --table feasible --episodes 10 "${FOLLOW[@]}"
 for noise in blind hard; do
     row() { # policy, distance
-        table "$1-$2-$noise" --table paper --search 9 --noise "$noise" --episodes 10 \
+        table "$1-$2-$noise" --table paper --search 5 --noise "$noise" --episodes 10 \
             --policy "$1" --distance "$2"
     }
     row constant exact
@@ -51,5 +52,5 @@ table sentences --instructions tests/data/instructions_test.jsonl --limit 100 --
     --search 1 "${FOLLOW[@]}"
 # MESHES: a folder of meshes of your own, such as the authors' twenty.
 if [ -n "${MESHES:-}" ]; then
-    table meshes --mesh-dir "$MESHES" --search 9 --episodes 20 "${FOLLOW[@]}"
+    table meshes --mesh-dir "$MESHES" --search 5 --episodes 20 "${FOLLOW[@]}"
 fi
