@@ -25,6 +25,7 @@ from maniskill_taskgrasp.tasks.posture_space import (
 from maniskill_taskgrasp.topology import Topology
 
 Array = NDArray[np.float64]
+Places = NDArray[np.integer]
 
 STARTS = 11  # Stored grasps that are tried first.
 SCOOP = np.array([0.0, -0.018, 0.0, 0.25, 0.0, 0.0])  # Palm lower, fingers down: facts, 3.
@@ -97,6 +98,12 @@ class Checked:
     both: float
 
 
+def _best_first(score: Array, row: Places) -> Places:
+    """Numbers of candidates by their mean score; `row` says whose each score (n,) is."""
+    means = [-score[row == i].mean() for i in range(row.max() + 1)]
+    return np.argsort(means, kind="stable")
+
+
 class GraspSearch:
     """One search; every batch of trials has noise of its own."""
 
@@ -124,7 +131,7 @@ class GraspSearch:
         names, starts = self._starts()
         row = np.arange(self._budget.num_envs) % len(starts)
         _, both, score = self._try(starts[row], whole=True)
-        order = np.argsort([-score[row == i].mean() for i in range(len(starts))], kind="stable")
+        order = _best_first(score, row)
         best = self._checked(starts[order[0]])
         good = both[row == order[0]].mean() >= GOOD_START and best.both >= GOOD_START
         if good and best.both < PROVEN:
@@ -211,8 +218,7 @@ class GraspSearch:
         while len(rivals) > 1:
             row = np.arange(self._budget.num_envs) % len(rivals)
             score = self._try(rivals[row], whole=True)[2]
-            order = np.argsort([-score[row == i].mean() for i in range(len(rivals))], kind="stable")
-            rivals = rivals[order[: len(rivals) // KEPT or 1]]
+            rivals = rivals[_best_first(score, row)[: len(rivals) // KEPT or 1]]
         return rivals[0]
 
     def _checked(self, numbers: Array) -> Checked:
