@@ -269,6 +269,7 @@ def _search(source: str, topology: Topology, options: GraspOptions) -> FoundGras
     from maniskill_taskgrasp.tasks.own_search import SearchBudget, find_grasp
 
     budget = SearchBudget(generations=options.search, seed=options.seed, follow=True)
+    budget = budget.meeting(options.noise)
     return find_grasp(source, topology, options.presentation, budget)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.tasks.cross_entropy import SearchSpace, cross_entropy
 from maniskill_taskgrasp.tasks.grasp_library import Grasp, nearest_grasps
+from maniskill_taskgrasp.tasks.noise import resolve_noise
 from maniskill_taskgrasp.tasks.pose_search import GraspTrials
 from maniskill_taskgrasp.tasks.posture_space import (
     POSTURE_FLOOR,
@@ -40,6 +41,8 @@ WIDE_SEARCHES = 2  # At most, each from other starts, until one comes to somethi
 PROVEN = 0.95  # Share of trials in lift and form at which a start needs no search.
 HOPELESS = 2.5  # Score below which nothing was even lifted.
 ENOUGH = 5.1  # Mean score of a generation of which nearly all lift in form.
+WIDEST = "blind"  # Noise under which grasps are hardened, for any that is wide.
+HARD_GENERATIONS = 8  # Of the search on under wide noise.
 SEED_STEP = 7919  # Between the seeds of batches, which no evaluation's seeds follow.
 
 
@@ -54,6 +57,8 @@ class SearchBudget:
     num_envs: int = 64
     """Trials in each batch."""
     noise: str = "paper"
+    hardened: str | None = None
+    """Noise under which what was found is searched on; None leaves it."""
     seed: int = 0
     follow: bool = False
     """Whether the palm follows the object in the trials, as it will when the grasp is used."""
@@ -62,13 +67,25 @@ class SearchBudget:
         if self.generations < 1:
             raise InputError(f"a search needs at least 1 generation, got {self.generations}")
 
+    def meeting(self, noise: str) -> SearchBudget:
+        """The same budget for grasps that will meet some noise: hardened, where it is wide.
+
+        Raises:
+            InputError: no noise has that name.
+        """
+        wide = resolve_noise(noise).position > resolve_noise(self.noise).position
+        return replace(self, hardened=WIDEST if wide else None)
+
     @property
     def trials(self) -> int:
         """Most simulated grasps: starts, a check of the best, and a search about it; then wide
         searches with a search about what each found. Searches end with rounds and a check."""
         narrow = self.narrow + ROUNDS + 1
         wide = self.generations + self.first - 1 + ROUNDS
-        return self.num_envs * (2 + narrow + WIDE_SEARCHES * (wide + narrow))
+        batches = 2 + narrow + WIDE_SEARCHES * (wide + narrow)
+        if self.hardened is not None:
+            batches += HARD_GENERATIONS + ROUNDS + 2
+        return self.num_envs * batches
 
     @property
     def narrow(self) -> int:
@@ -147,6 +164,14 @@ class GraspSearch:
             self._batches * self._budget.num_envs,
         )
 
+    def harden(self, found: SearchResult) -> SearchResult:
+        """Search on about a grasp that another search found, whose trials knew less noise."""
+        best = self._checked(self._numbers(found.grasp))
+        if best.both < PROVEN:
+            best = self._narrow(best, best.numbers, HARD_GENERATIONS)
+        spent = found.spent + self._batches * self._budget.num_envs
+        return SearchResult(self._grasp(best), found.start, spent)
+
     def _starts(self) -> tuple[list[str], Array]:
         """Names and numbers (k, 14) of what is tried first."""
         placement, topology = self._placement, self._topology
@@ -192,7 +217,7 @@ class GraspSearch:
         )
         return self._race([mean], history)
 
-    def _narrow(self, best: Checked, centre: Array) -> Checked:
+    def _narrow(self, best: Checked, centre: Array, generations: int | None = None) -> Checked:
         """Where a search about one grasp comes to, if it is better than the best so far."""
         mean, history = cross_entropy(
             lambda candidates: self._try(candidates, whole=True)[2],
@@ -200,7 +225,7 @@ class GraspSearch:
             self._space(NEAR),
             self._rng(),
             population=self._budget.num_envs,
-            generations=self._budget.narrow,
+            generations=generations or self._budget.narrow,
             enough=ENOUGH,
         )
         found = self._checked(self._race([best.numbers, centre, mean], history))

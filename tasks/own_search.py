@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from maniskill_taskgrasp.assets.objects.model import ObjectModel
 from maniskill_taskgrasp.assets.objects.store import part_to_json, write_atomically
 from maniskill_taskgrasp.tasks.fingerprint import code_fingerprint
 from maniskill_taskgrasp.tasks.grasp_library import Grasp
-from maniskill_taskgrasp.tasks.grasp_search import GraspSearch, SearchBudget
+from maniskill_taskgrasp.tasks.grasp_search import GraspSearch, SearchBudget, SearchResult
 from maniskill_taskgrasp.tasks.pose_search import GraspTrials
 from maniskill_taskgrasp.topology import Topology
 
@@ -85,19 +86,29 @@ def search(
     obj: str, topology: Topology, presentation: str, budget: SearchBudget, processes: int = 0
 ) -> FoundGrasp:
     """Search on an object, whatever was found before."""
-    trials = GraspTrials(
-        obj,
-        topology,
-        presentation,
-        budget.noise,
-        budget.num_envs,
-        processes=processes,
-        follow=budget.follow,
-    )
-    try:
-        result = GraspSearch(trials, topology, budget).run()
-    finally:
-        trials.close()
+
+    def searching(
+        noise: str, distance: str, run: Callable[[GraspSearch], SearchResult]
+    ) -> SearchResult:
+        trials = GraspTrials(
+            obj,
+            topology,
+            presentation,
+            noise,
+            budget.num_envs,
+            processes=processes,
+            follow=budget.follow,
+            distance=distance,
+        )
+        try:
+            return run(GraspSearch(trials, topology, budget))
+        finally:
+            trials.close()
+
+    result = searching(budget.noise, "exact", lambda search: search.run())
+    if budget.hardened is not None:
+        first = result
+        result = searching(budget.hardened, "noisy", lambda search: search.harden(first))
     return FoundGrasp(result.grasp, result.start, result.spent)
 
 

@@ -35,11 +35,13 @@ class GraspTrials:
         num_envs: int,
         processes: int = 0,
         follow: bool = False,
+        distance: str = "exact",
     ) -> None:
         """
         Args:
             processes: that share the physics; 0 chooses.
-            follow: the palm follows the object by exact distances, else it stays on its path.
+            follow: the palm follows the object by its distances, else it stays on its path.
+            distance: what the distances know, one of `arguments.DISTANCES`.
 
         Raises:
             InputError: unknown object, presentation or noise.
@@ -54,6 +56,7 @@ class GraspTrials:
             reward_mode="none",
             obs="full" if follow else "paper",
             control_mode="pd_synergy_wrist" if follow else "pd_synergy",
+            distance=distance,
             sim_config={"scene_config": {"cpu_workers": processes}},
         ).unwrapped
         self.num_envs = num_envs

@@ -63,6 +63,7 @@ def test_the_same_search_is_made_once(searches):
         ("phone", PAD, "auto", replace(BUDGET, generations=4)),
         ("phone", PAD, "auto", replace(BUDGET, seed=1)),
         ("phone", PAD, "auto", replace(BUDGET, noise="hard")),
+        ("phone", PAD, "auto", BUDGET.meeting("blind")),
     ],
 )
 def test_another_search_is_made_anew(searches, obj, topology, presentation, budget):
@@ -93,26 +94,43 @@ def test_a_search_without_generations_is_refused():
         SearchBudget(generations=0)
 
 
+@pytest.mark.parametrize(
+    ("noise", "hardened"), [("none", None), ("paper", None), ("hard", "blind"), ("blind", "blind")]
+)
+def test_grasps_that_will_meet_wide_noise_are_hardened(noise, hardened):
+    assert BUDGET.meeting(noise).hardened == hardened
+
+
+def test_a_noise_that_does_not_exist_is_refused():
+    with pytest.raises(InputError, match="unknown noise 'loud'"):
+        BUDGET.meeting("loud")
+
+
 def test_results_say_that_the_object_itself_was_searched():
     assert "searched on this very object (320 simulated trials, now)" in FOUND.note
     assert FOUND.summary()["trials"] == 320
 
 
-def test_a_search_counts_its_trials_and_stays_in_bounds(monkeypatch):
-    """In the simulator, small: every trial is counted, the grasp lies in the searched box."""
-    spent = []
+@pytest.mark.parametrize(("noise", "most"), [("paper", 176), ("blind", 272)])
+def test_a_search_counts_its_trials_and_stays_in_bounds(monkeypatch, noise, most):
+    """In the simulator, small: every trial is counted, the grasp lies in the searched box, and
+    the last trials meet the noise that the grasp is for."""
+    spent, met = [], []
     trials = own_search.GraspTrials
 
     class Counting(trials):
         def run(self, pregrasp, *args, **kwargs):
+            result = super().run(pregrasp, *args, **kwargs)
             spent.append(len(pregrasp))
-            return super().run(pregrasp, *args, **kwargs)
+            met.append(self.env.spec.kwargs["noise"])
+            return result
 
     monkeypatch.setattr(own_search, "GraspTrials", Counting)
     monkeypatch.setattr(grasp_search, "PROVEN", 1.1)  # No start is so good.
-    budget = SearchBudget(generations=1, num_envs=8)
+    budget = SearchBudget(generations=1, num_envs=8, follow=True).meeting(noise)
     found = own_search.search("screwdriver", PAD, "auto", budget)
-    assert sum(spent) == found.spent <= budget.trials == 176
+    assert sum(spent) == found.spent <= budget.trials == most
+    assert (met[0], met[-1]) == ("paper", noise)
     pregrasp = np.array(found.grasp.pregrasp)
     assert (pregrasp >= PREGRASP_LOWER).all()
     assert (pregrasp <= PREGRASP_UPPER).all()

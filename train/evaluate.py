@@ -193,8 +193,12 @@ def _measure(
 def _search(offer: Offer, config: EvaluateConfig) -> FoundGrasp:
     assert offer.topology is not None
     # The same grasps whatever the policy, so that policies can be compared.
-    budget = SearchBudget(generations=config.search, seed=config.seed, follow=True)
+    budget = _budget(config.search, config.seed, config.noise)
     return find_grasp(offer.source, offer.topology, config.presentation, budget, processes=1)
+
+
+def _budget(generations: int, seed: int, noise: str) -> SearchBudget:
+    return SearchBudget(generations=generations, seed=seed, follow=True).meeting(noise)
 
 
 def _settings(config: EvaluateConfig) -> Json:
@@ -211,12 +215,12 @@ def _settings(config: EvaluateConfig) -> Json:
 
 def _search_note(settings: Json, cells: list[Json]) -> Json:
     """That grasps were searched on the evaluated objects, and how much simulation that took."""
-    budget = SearchBudget(generations=settings["search"], seed=settings["seed"])
+    budget = _budget(settings["search"], settings["seed"], settings["noise"])
     return {
         "on_evaluated_objects": True,
         "generations": budget.generations,
         "trials_per_pair": budget.trials,
-        "noise": budget.noise,
+        "noise": budget.hardened or budget.noise,
         "pairs": sum(cell.get("search") is not None for cell in cells),
     }
 
