@@ -48,6 +48,8 @@ class Grasp(Output):
     """"constant" closes all the way; with "follow" the palm also follows the object by what is
     sensed; "guarded" also waits with what touches first; "learned" is the shipped policy; or a
     checkpoint file."""
+    distance: str | None = None
+    """What the distances know: exact, noisy or none; left out, as the policy was trained."""
     episodes: int = 1
     """How many times to try."""
     seed: int = 0
@@ -69,6 +71,7 @@ class Grasp(Output):
             object=self.object,
             topology=self.topology,
             policy=self.policy,
+            distance=self.distance,
             episodes=self.episodes,
             seed=self.seed,
             noise=self.noise,

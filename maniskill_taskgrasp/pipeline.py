@@ -97,6 +97,8 @@ class GraspOptions:
     policy: str = "follow"
     """"constant" (closes all the way), "follow" (the palm also follows the object by what is
     sensed), "learned" (the shipped policy) or a checkpoint of train/ppo.py."""
+    distance: str | None = None
+    """What the distances know: exact, noisy or none; None leaves it to the policy."""
     episodes: int = 1
     seed: int = 0
     noise: str = "paper"
@@ -178,7 +180,7 @@ class Pipeline:
         topology = choose_topology(selection, options.topology)
         from maniskill_taskgrasp.tasks.rollout import roll_out
 
-        make_policy, env_kwargs = policy_maker(options.policy)
+        make_policy, env_kwargs = policy_maker(options.policy, options.distance)
         source = options.object or selection.object
         found = _search(source, topology, options)
         rollout = roll_out(

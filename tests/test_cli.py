@@ -57,6 +57,7 @@ def run(capsys, *args):
         (("grasp", "hand me the mug", "--episodes", "0"), "0"),
         (("grasp", "hand me the mug", "--noise", "loud"), "loud"),
         (("grasp", "hand me the mug", "--policy", "nosuch.pt"), "nosuch.pt"),
+        (("grasp", "hand me the mug", "--distance", "guessed"), "guessed"),
         (("grasp",), "STR"),
         (("select",), "neither"),
         (("select", "--from-file", "nosuch.txt"), "nosuch.txt"),
