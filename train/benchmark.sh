@@ -37,6 +37,10 @@ table table1-own --table paper --search 5 --episodes 100 "${FOLLOW[@]}"
 table table1-stored --table paper --episodes 20 "${FOLLOW[@]}"
 table feasible-own --table feasible --search 5 --episodes 10 "${FOLLOW[@]}"
 table feasible-stored --table feasible --episodes 10 "${FOLLOW[@]}"
+for policy in constant "$RUNS/paper/final_ckpt.pt"; do
+    table "paper-preset-$(tr / - <<< "$policy")" --topologies "precision pad abd 2-3" --objects "small knob" rod screw \
+        --search 5 --episodes 100 --policy "$policy"
+done
 for noise in blind hard; do  # Searches go on under wide noise: up to 768 trials more a pair.
     row() { # policy, distance
         table "$(tr / - <<< "$1")-$2-$noise" --table paper --search 5 --noise "$noise" --episodes 10 \
