@@ -25,6 +25,7 @@ from maniskill_taskgrasp.assets.objects.importer import import_file
 from maniskill_taskgrasp.assets.objects.library import load, names
 from maniskill_taskgrasp.assets.objects.meshfile import infer_units
 from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.selection.feasibility import closing_extents
 
 
 @pytest.fixture(scope="module")
@@ -282,6 +283,22 @@ def test_affordance_is_read_off_the_shape(body, shape, round_about, own_library,
     import_objects(tmp_path / "thing.ply")
     affordance = load("thing").affordance
     assert (affordance.shape, affordance.roundness) == (shape, round_about)
+
+
+def test_hand_closes_on_the_middle_across_what_people_close_across(own_library, tmp_path):
+    """A dumb-bell is as wide as its bar; a plate wider than 10 cm is held across its thickness."""
+    bells = [trimesh.creation.cylinder(0.03, 0.03), trimesh.creation.cylinder(0.03, 0.03)]
+    bells[0].apply_translation((0, 0, 0.06))
+    bells[1].apply_translation((0, 0, -0.06))
+    bar = trimesh.creation.cylinder(0.01, 0.12)
+    trimesh.boolean.union([bar, *bells], engine="manifold").export(tmp_path / "bell.ply")
+    trimesh.creation.cylinder(0.09, 0.01).export(tmp_path / "dish.ply")
+    import_objects(tmp_path)
+    bell, dish = load("bell"), load("dish imported")
+    assert bell.extents_m == pytest.approx((0.15, 0.06, 0.06), abs=1e-3)
+    assert bell.grasped_extents_m == pytest.approx((0.15, 0.02, 0.02), abs=1e-3)
+    assert closing_extents(bell.affordance) == pytest.approx((0.02,), abs=1e-3)
+    assert closing_extents(dish.affordance) == pytest.approx((0.01,), abs=1e-3)
 
 
 def test_mesh_lying_askew_is_turned_and_one_with_hollows_cut(own_library, tmp_path):

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from maniskill_taskgrasp.knowledge import Affordance
 
+if TYPE_CHECKING:
+    import trimesh
+
 Array = NDArray[np.float64]
 
 ZINGG = 2 / 3  # Ratio of neighbouring extents above which they count as alike.
 CAP_LENGTH, CAP_MASS = 0.15, 1.0  # [m], [kg] where the data set caps its measurements.
+WIDE = (
+    0.10  # [m] Of 50 objects of the data set that are wider and at most 8 cm thin, people hold 46
+)
+# across the thinnest extent, and of the 8 held across the rim of a disk only one is wider.
+HALF_HAND = 0.02  # [m] Half the breadth of two fingers, which close on so much of the length.
 ROUND_FILL = 0.06  # Share by which a silhouette may differ from its ellipse and count as round.
 
 TYPES = {
@@ -67,12 +76,45 @@ def _round_along(points: Array, axis: int) -> bool:
     return bool(abs(fill - 1) < ROUND_FILL and np.linalg.norm(unit, axis=1).max() < 1 + ROUND_FILL)
 
 
+def middle_box(mesh: trimesh.Trimesh, com: Array) -> tuple[Array, Array]:
+    """Centre and extents (3,) [m] of what a hand closes on: the length, and the middle's width.
+
+    The data set measures the portion that people grasp. Of an object that nobody labelled it is
+    taken to be where the planner aims: two fingers' breadth about the centre of mass along x, the
+    longest axis. A glass is as wide there as its stem, a pair of headphones as its band.
+
+    Args:
+        mesh: in the object frame.
+        com: (3,) [m] centre of mass.
+    """
+    ends = com[0] - HALF_HAND, com[0] + HALF_HAND
+    x = mesh.vertices[:, 0]
+    within = mesh.vertices[(x >= ends[0]) & (x <= ends[1])]
+    edges = mesh.vertices[mesh.edges_unique]
+    middle = np.concatenate([within, *(_crossings(edges, end) for end in ends)])
+    low, high = mesh.bounds.copy()
+    if len(middle):
+        low[1:], high[1:] = middle[:, 1:].min(0), middle[:, 1:].max(0)
+    return (low + high) / 2, high - low
+
+
+def _crossings(edges: Array, x: float) -> Array:
+    """(k, 3) points at which edges (n, 2, 3) pass through the plane at x."""
+    start, end = edges[:, 0], edges[:, 1]
+    passing = (start[:, 0] - x) * (end[:, 0] - x) < 0
+    start, way = start[passing], (end - start)[passing]
+    return start + way * ((x - start[:, 0]) / way[:, 0])[:, None]
+
+
 def describe(name: str, extents: Sequence[float], mass: float, points: Array) -> Affordance:
-    """Affordance of an object with those extents a >= b >= c [m] and surface points (n, 3)."""
+    """Affordance from extents [m] where the object is grasped and all its surface points (n, 3)."""
+    extents = sorted((float(extent) for extent in extents), reverse=True)
     shape = zingg_shape(extents)
     round_about = roundness(points, shape)
     kind, grasped = TYPES[shape, round_about]
-    a, b, c = (min(float(extent), CAP_LENGTH) for extent in extents)
+    a, b, c = (min(extent, CAP_LENGTH) for extent in extents)
+    if b > WIDE:
+        grasped = "c"
     return Affordance(
         name=name,
         dimensions_m=(a, b, c),

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from maniskill_taskgrasp.assets.objects.affordance import describe
+from maniskill_taskgrasp.assets.objects.affordance import describe, middle_box
 from maniskill_taskgrasp.assets.objects.closeness import remarks
 from maniskill_taskgrasp.assets.objects.decompose import (
     MAX_DRAWN_FACES,
@@ -38,7 +38,7 @@ MIN_MASS, MAX_MASS = 0.001, 5.0  # [kg] what a user may give.
 MAX_GUESS = 1.0  # [kg] the data set's cap, also of a guessed mass.
 MAX_NAME = 60
 ASKEW = 0.85  # Share of the axis-aligned box's volume below which the smallest box is taken.
-FORMAT = 2  # Raised when the stored form of imported objects changes.
+FORMAT = 3  # Raised when the stored form of imported objects changes.
 
 
 @dataclass(frozen=True)
@@ -79,22 +79,24 @@ def object_from_mesh(
     elif not MIN_MASS <= mass <= MAX_MASS:
         raise InputError(f"mass {mass} kg: from {MIN_MASS} to {MAX_MASS} kg would do")
     com, unit_inertia = body.center_mass, body.moment_inertia / body.volume
-    extents = tuple(float(e) for e in mesh.extents)
+    held_center, held = middle_box(mesh, com)
+    points = np.concatenate([mesh.vertices, _corners(parts)])
     model = ObjectModel(
         name=name,
-        extents_m=(extents[0], extents[1], extents[2]),
+        extents_m=_triple(mesh.extents),
         mass_kg=mass,
         com=com,
         inertia=unit_inertia * mass,
         friction=FRICTION["plastic"],
         rigidity="rigid",
-        affordance=describe(name, extents, mass, np.concatenate([mesh.vertices, _corners(parts)])),
+        affordance=describe(name, held.tolist(), mass, points),
         split="imported",
         parts=parts,
         resting_poses=tuple(
             candidate_poses(parts, com, unit_inertia, _upright(placing[:3, :3], origin))
         ),
-        grasped_extents_m=(extents[0], extents[1], extents[2]),
+        grasped_center=_triple(held_center),
+        grasped_extents_m=_triple(held),
         material="plastic",
         category="imported",
         source=origin.source,
@@ -104,6 +106,11 @@ def object_from_mesh(
         mesh=lambda: drawn,
     )
     return _rested(model), tuple(notes)
+
+
+def _triple(row: Array) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in row)
+    return x, y, z
 
 
 def _parts(mesh: trimesh.Trimesh, name: str) -> tuple[Part, ...]:

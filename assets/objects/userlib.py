@@ -96,6 +96,8 @@ def object_to_json(model: ObjectModel, notes: tuple[str, ...]) -> Json:
     return {
         **{key: getattr(model, key) for key in (*plain, "source", "licence", "watertight")},
         "extents_m": list(model.extents_m),
+        "grasped_center": list(model.grasped_center),
+        "grasped_extents_m": list(model.grasped_extents_m),
         "com": model.com.tolist(),
         "inertia": model.inertia.tolist(),
         "volume_m3": model.volume_m3,
@@ -111,10 +113,9 @@ def object_from_json(data: Json, mesh_file: Path) -> ObjectModel:
     """Inverse of `object_to_json`, with the mesh read from a file when it is first needed."""
     facts = {key: value for key, value in data.items() if key != "notes"}
     affordance = data["affordance"]
-    extents = tuple(data["extents_m"])
+    triples = ("extents_m", "grasped_center", "grasped_extents_m")
     facts.update(
-        extents_m=extents,
-        grasped_extents_m=extents,
+        {name: tuple(data[name]) for name in triples},
         com=np.array(data["com"]),
         inertia=np.array(data["inertia"]),
         affordance=Affordance(**{**affordance, "dimensions_m": tuple(affordance["dimensions_m"])}),
