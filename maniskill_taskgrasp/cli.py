@@ -46,8 +46,8 @@ class Grasp(Output):
     """Grasp topology to use, whatever the selector says (`taskgrasp topologies` lists them)."""
     policy: str = "follow"
     """"constant" closes all the way; with "follow" the palm also follows the object by what is
-    sensed; "guarded" also waits with what touches first; "learned" is the shipped policy; or a
-    checkpoint file."""
+    sensed; "guarded" also waits with what touches first; "probing" also comes down feeling, for
+    touch alone; "learned" is the shipped policy; or a checkpoint file."""
     distance: str | None = None
     """What the distances know: exact, noisy or none; left out, as the policy was trained."""
     episodes: int = 1
@@ -345,6 +345,9 @@ def main(args: list[str] | None = None) -> None:
         sys.exit(2)
     except BrokenPipeError:  # The reader of a pipe, such as `head`, has seen enough.
         sys.stderr.close()
+    except OSError as error:
+        print(f"taskgrasp: {error.strerror or error}: {error.filename!r}", file=sys.stderr)
+        sys.exit(2)
 
 
 def _parse(args: list[str] | None) -> Any:
@@ -366,10 +369,11 @@ def _parse(args: list[str] | None) -> Any:
     except SystemExit as error:
         if error.code != 2:
             raise
-    plain = re.sub(r"\x1b\[[0-9;]*m|[╭╮╰╯│─]", " ", complaint.getvalue())
+    plain = re.sub(r"\x1b\[[0-9;]*m|[╭╮╰╯│─]|-{4,}", " ", complaint.getvalue())
     lines = [" ".join(line.split()) for line in plain.splitlines()]
     text = " ".join(line for line in lines if line and not line.startswith("Parsing error"))
-    text = re.sub(r"^Value error Error parsing \w+: (.*) For full helptext.*$", r"\1", text)
+    text = re.sub(r"^Value error (?:Error parsing [A-Z]\w+: )?", "", text)
+    text = re.split(r" (?:Argument helptext:|For full helptext)", text)[0]
     raise InputError(text or "the arguments make no sense; see taskgrasp --help")
 
 

@@ -19,17 +19,21 @@ def echo(value: object) -> str:
     return repr(shortened)
 
 
-def unknown_name(kind: str, value: object, known: Iterable[str], more: str) -> InputError:
+def unknown_name(
+    kind: str, value: object, known: Iterable[str], more: str | None = None
+) -> InputError:
     """Error for a name that is not in a list, with the closest names that are.
 
     Args:
         kind: what was named, such as "object".
         value: what came.
         known: the names that would do.
-        more: where the whole list can be seen, such as "taskgrasp objects list".
+        more: where the whole list can be seen, such as "taskgrasp objects list"; a short list is
+            given in the message itself.
     """
-    close = difflib.get_close_matches(str(value).lower(), list(known), n=3, cutoff=0.6)
-    hint = f"{more} shows all"
+    names = list(known)
+    close = difflib.get_close_matches(str(value).lower(), names, n=3, cutoff=0.6)
+    hint = f"{more} shows all" if more else f"one of {', '.join(names)} would do"
     if close:
         hint = f"did you mean {', '.join(map(repr, close))}? ({hint})"
     return InputError(f"unknown {kind} {echo(value)}: {hint}")

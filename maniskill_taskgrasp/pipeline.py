@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from maniskill_taskgrasp.tasks.own_search import FoundGrasp
 
 TOP = 3  # Topologies that a report names.
+SEED_LIMIT = 2**32  # Numpy's generators take less.
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,8 @@ class GraspOptions:
     """A topology that overrides the selector's choice."""
     policy: str = "follow"
     """"constant" (closes all the way), "follow" (the palm also follows the object by what is
-    sensed), "learned" (the shipped policy) or a checkpoint of train/ppo.py."""
+    sensed), another rule of docs/planning.md, "learned" (the shipped policy) or a checkpoint of
+    train/ppo.py."""
     distance: str | None = None
     """What the distances know: exact, noisy or none; None leaves it to the policy."""
     episodes: int = 1
@@ -111,8 +113,8 @@ class GraspOptions:
     def __post_init__(self) -> None:
         if self.episodes < 1:
             raise InputError(f"episodes must be at least 1, got {self.episodes}")
-        if self.seed < 0:
-            raise InputError(f"seed must be 0 or more, got {self.seed}")
+        if not 0 <= self.seed <= SEED_LIMIT - self.episodes:
+            raise InputError(f"seed must be from 0 to 2**32 - episodes, got {self.seed}")
         if self.search < 0:
             raise InputError(f"search must be 0 or more, got {self.search}")
         if self.topology is not None:
@@ -237,7 +239,7 @@ def policy_maker(
     """Maker of a policy for an environment, and the arguments the environment must have.
 
     Args:
-        name: "constant", "follow", "guarded", "hover-rule", "learned", or a checkpoint file.
+        name: "constant", "follow", "guarded", "probing", "hover-rule", "learned", or a checkpoint.
         distance: what the distances shall know; None leaves it to the policy.
 
     Raises:
@@ -255,7 +257,14 @@ def policy_maker(
 
     if name == "constant":
         return ConstantClosing, given
-    rules = {"follow": FollowRule, "guarded": GuardedRule, "hover-rule": HoverRule}
+    from maniskill_taskgrasp.tasks.probing import ProbingRule
+
+    rules = {
+        "follow": FollowRule,
+        "guarded": GuardedRule,
+        "probing": ProbingRule,
+        "hover-rule": HoverRule,
+    }
     if name in rules:
         return rules[name], {"control_mode": "pd_synergy_wrist"} | given
     from maniskill_taskgrasp.train.policy import load_policy, policy_env_kwargs
@@ -270,8 +279,7 @@ def _search(source: str, topology: Topology, options: GraspOptions) -> FoundGras
         return None
     from maniskill_taskgrasp.tasks.own_search import SearchBudget, find_grasp
 
-    budget = SearchBudget(generations=options.search, seed=options.seed, follow=True)
-    budget = budget.meeting(options.noise)
+    budget = SearchBudget.on_object(options.search, options.seed, options.noise)
     return find_grasp(source, topology, options.presentation, budget)
 
 

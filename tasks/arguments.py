@@ -27,11 +27,13 @@ def resolve_topologies(topology: str | Sequence[str], control_mode: str | None) 
     """Topologies of the environments, from a name, several or "all".
 
     Raises:
-        InputError: an unknown name, or one that a `pd_synergy_<slug>` contradicts.
+        InputError: no name, an unknown one, or one that a `pd_synergy_<slug>` contradicts.
     """
     if isinstance(topology, str):
         topology = [t.name for t in TOPOLOGIES] if topology == "all" else [topology]
     topologies = [resolve_topology(name) for name in topology]
+    if not topologies:
+        raise InputError("topology must name at least one topology, got an empty list")
     own = [t for t in TOPOLOGIES if control_mode == f"pd_synergy_{t.slug}"]
     if own and topologies != own:
         names = ", ".join(t.name for t in topologies)

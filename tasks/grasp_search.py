@@ -67,6 +67,15 @@ class SearchBudget:
         if self.generations < 1:
             raise InputError(f"a search needs at least 1 generation, got {self.generations}")
 
+    @classmethod
+    def on_object(cls, generations: int, seed: int, noise: str) -> SearchBudget:
+        """What `--search` stands for on an object that will meet some noise.
+
+        Raises:
+            InputError: no generation, or no noise has that name.
+        """
+        return cls(generations=generations, seed=seed, follow=True).meeting(noise)
+
     def meeting(self, noise: str) -> SearchBudget:
         """The same budget for grasps that will meet some noise: hardened, where it is wide.
 

@@ -41,7 +41,7 @@ def resolve_noise(name: str) -> Noise:
         InputError: no noise has that name.
     """
     if name not in NOISES:
-        raise unknown_name("noise", name, NOISES, "none, paper, hard, blind")
+        raise unknown_name("noise", name, NOISES)
     return NOISES[name]
 
 

@@ -22,7 +22,6 @@ FAILURES = (
 LIFT_HEIGHT = 0.20  # [m] rise of the object that counts as lifted (paper, section III).
 OFF_TABLE = 0.03  # [m] rise at which the object has left its support.
 WILD_SPEED = 10.0  # [m/s] no object on a table moves so fast: the physics blew up.
-SETTLED = 0.5  # [s] over which contacts are averaged for the form.
 MEMORY = 0.8  # Weight of the past in the running mean of forces; 10 steps leave 11 % of it.
 
 

@@ -41,11 +41,11 @@ from maniskill_taskgrasp.tasks.outcome import LIFT_HEIGHT, Outcome
 from maniskill_taskgrasp.tasks.placement import Placement, place
 from maniskill_taskgrasp.tasks.planner import PregraspPlanner
 from maniskill_taskgrasp.tasks.plans import PlanBook, Plans
-from maniskill_taskgrasp.tasks.pregrasp import palm_path
+from maniskill_taskgrasp.tasks.pregrasp import PREGRASP_FIELDS, palm_path
 from maniskill_taskgrasp.tasks.senses import HandSenses, Reading
 from maniskill_taskgrasp.tasks.sensing import HandBoxes, ObjectSurfaces
 from maniskill_taskgrasp.tasks.surface import surface_of
-from maniskill_taskgrasp.topology import Topology, resolve_topology
+from maniskill_taskgrasp.topology import Topology
 
 SIM_FREQ = 100  # [Hz]
 
@@ -218,7 +218,7 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
 
     def _draw_topologies(self, env_idx: Tensor, options: dict) -> list[Topology]:
         if "topology" in options:
-            return [resolve_topology(options["topology"])] * len(env_idx)
+            return resolve_topologies(options["topology"], self.control_mode) * len(env_idx)
         return [self.topologies[int(env) % len(self.topologies)] for env in env_idx]
 
     def _plan(self, env_idx: Tensor, topologies: list[Topology], options: dict) -> Plans:
@@ -230,7 +230,12 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
             torch.tensor([posture.closing for posture in own]),
         )
         placements = [self.placements[int(env)] for env in env_idx]
-        return self._plan_book.custom(placements, torch.as_tensor(options["pregrasp"]), *shapes)
+        pregrasp = torch.as_tensor(options["pregrasp"])
+        wanted = (len(env_idx), len(PREGRASP_FIELDS))
+        if pregrasp.shape != wanted:
+            came = tuple(pregrasp.shape)
+            raise ValueError(f"options['pregrasp'] must have shape {wanted}, got {came}")
+        return self._plan_book.custom(placements, pregrasp, *shapes)
 
     def _place_robot(self, env_idx: Tensor, plans: Plans) -> None:
         arm, hand = plans.path[:, 0].cpu().numpy(), plans.preshape.cpu().numpy()

@@ -122,3 +122,17 @@ def test_grasp_repeats_itself_to_the_digit(capsys):
         del document["seconds"]
         documents.append(document)
     assert documents[0] == documents[1]
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(tmp_path, capsys):
+    (tmp_path / "taken").write_text("")
+    flags = ("--objects", "hammer", "--episodes", "1", "--out", str(tmp_path / "taken"))
+    code, _, err = run(capsys, "evaluate", *flags)
+    assert code == 2
+    assert err.count("\n") == 1 and "taken" in err
+
+
+def test_a_seed_that_numpy_cannot_take_is_one_line(capsys):
+    code, _, err = run(capsys, "grasp", "lift the cup", "--seed", str(2**32))
+    assert (code, err.count("\n")) == (2, 1)
+    assert "seed must be from 0 to 2**32" in err

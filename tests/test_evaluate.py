@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+import trimesh
 
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.tasks.outcome import FAILURES
@@ -25,6 +26,7 @@ from maniskill_taskgrasp.train.intervals import wilson_interval
 from maniskill_taskgrasp.train.offers import Offer, list_offers
 from maniskill_taskgrasp.train.paired import compare, compare_results
 from maniskill_taskgrasp.train.tables import table_lines
+from maniskill_taskgrasp.train.traces import file_label
 
 PAD = resolve_topology("Precision pad abd 2-3")
 PALM = resolve_topology("Power palm abd 2-5")
@@ -234,6 +236,35 @@ def test_the_selector_offers_at_most_one_topology_an_object():
 def test_a_folder_without_meshes_is_refused(tmp_path):
     with pytest.raises(InputError, match="no mesh in"):
         list_offers(EvaluateConfig(mesh_dir=tmp_path))
+
+
+def test_meshes_that_share_a_name_are_told_apart(tmp_path):
+    trimesh.creation.box((0.03, 0.04, 0.1)).export(tmp_path / "block.stl")
+    trimesh.creation.cylinder(0.02, 0.1).export(tmp_path / "block.ply")
+    offers = list_offers(EvaluateConfig(mesh_dir=tmp_path))
+    assert [offer.object for offer in offers] == ["block", "block 2"]
+    assert len({offer.source for offer in offers}) == 2
+
+
+def test_a_wrong_distance_is_refused_before_a_folder_is_made(tmp_path):
+    config = EvaluateConfig(objects=("hammer",), distance="weird", out=tmp_path / "out")
+    with pytest.raises(InputError, match="--distance must be one of exact, noisy, none"):
+        evaluation.evaluate(config)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("content", ["{", "{}", "[]"])
+def test_damaged_results_are_refused_in_one_line(tmp_path, content):
+    (tmp_path / "results.json").write_text(content)
+    config = EvaluateConfig(objects=("hammer",), episodes=1, out=tmp_path)
+    with pytest.raises(InputError, match="is damaged: remove it"):
+        evaluation.evaluate(config)
+
+
+def test_pictures_of_sentences_about_one_object_have_names_of_their_own():
+    start = "please " * 30
+    labels = {file_label("cup", text) for text in ("", f"{start}lift it", f"{start}hand it over")}
+    assert len(labels) == 3
 
 
 def test_sentences_are_understood_or_refused_with_a_reason(tmp_path):

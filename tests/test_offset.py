@@ -17,6 +17,7 @@ from maniskill_taskgrasp.tasks.closing import (
     HoverRule,
 )
 from maniskill_taskgrasp.tasks.offset import OffsetFilter, displaced, following
+from maniskill_taskgrasp.tasks.probing import ASIDE, ASIDE_STEPS, DOWN, RAISED, ProbingRule
 from maniskill_taskgrasp.tasks.rewards import centre_term
 
 PALM = torch.tensor([[0.06, -0.02, 0.10]])
@@ -179,3 +180,55 @@ def test_a_guarded_part_waits_until_the_other_side_touches(blind_env, monkeypatc
     both[:, PARTS.index("index")] = 1.0
     monkeypatch.setattr(blind_env, "_reading", replace(alone, forces=both))
     assert torch.equal(guarded(None)[:, palm:], closing)
+
+
+def _pushed_up(env, part):
+    """What is felt now, but for 1 N straight up on the end of one part."""
+    hand = env.agent.hand
+    names = [link for own in PARTS for link in hand.part_links[own]]
+    reading, link = env.reading, names.index(hand.tip_links[part])
+    local = torch.zeros_like(reading.local_forces)
+    local[:, link] = reading.link_frames[:, link, 2, :3]  # World z in the link's frame.
+    return replace(reading, local_forces=local)
+
+
+def test_a_probing_palm_comes_down_late_with_the_hand_open(blind_env):
+    blind_env.reset(seed=6)
+    rule = ProbingRule(blind_env)
+    arm = blind_env.agent.controller.controllers["arm"]
+    heights, closing = [], []
+    for _ in range(CLOSE_START + 10):
+        action = rule(None)
+        blind_env.step(action)
+        heights.append(arm.residual[:, 2].clone())
+        closing.append(action[:, rule._num_palm :].amax(1))
+    untouched = rule._landed_at > CLOSE_START + 10
+    assert untouched.any()
+    heights, closing = torch.stack(heights)[:, untouched], torch.stack(closing)[:, untouched]
+    assert heights[PHASE_ENDS[HOVER] : CLOSE_START].allclose(torch.tensor(RAISED), atol=1e-4)
+    assert (heights[-1] <= DOWN).all()
+    assert (closing[:CLOSE_START] == 0).all() and (closing[-1] == 1).all()
+
+
+@pytest.mark.parametrize(("part", "sign"), [("index", 1.0), ("thumb", -1.0)])
+def test_a_digit_that_lands_sends_the_palm_aside_and_up(blind_env, monkeypatch, part, sign):
+    """Towards the side of what landed, so that the object comes between thumb and fingers."""
+    blind_env.reset(seed=7)
+    rule = ProbingRule(blind_env)
+    arm = blind_env.agent.controller.controllers["arm"]
+    for _ in range(CLOSE_START - 2):
+        blind_env.step(rule(None))
+    before = arm.residual.clone()
+    rule._landed_at[:] = CLOSE_START + 100  # Nothing has landed so far.
+    monkeypatch.setattr(blind_env, "_reading", _pushed_up(blind_env, part))
+    rule(None)
+    tips = blind_env.reading.link_frames[:, rule._tips, :2, 3]
+    towards = tips[:, ~rule._thumb].mean(1) - tips[:, rule._thumb].mean(1)
+    way = rule._aside - before[:, :2]
+    assert (rule._landed_at == CLOSE_START - 2).all()
+    assert way.norm(dim=1).allclose(torch.tensor(ASIDE), atol=1e-5)
+    assert (sign * (way * towards).sum(1) > 0.9 * ASIDE * towards.norm(dim=1)).all()
+    wanted = rule._palm(blind_env.elapsed_steps.long())
+    assert wanted[:, 2].allclose(torch.tensor(RAISED), atol=1e-4)
+    later = rule._palm(blind_env.elapsed_steps.long() + ASIDE_STEPS)
+    assert (later[:, 2] == 0).all() and torch.equal(later[:, :2], rule._aside)

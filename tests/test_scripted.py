@@ -24,6 +24,6 @@ def test_suite_is_eight_primitives_in_a_library_that_goes_away(tmp_path, monkeyp
         assert all(feasible(name, model.affordance)[0] for name in scripted.TOPOLOGIES)
 
 
-def test_negative_episodes_are_refused():
+def test_no_episodes_are_refused_before_anything_is_made():
     with pytest.raises(InputError, match="--episodes must be 1 or more"):
         scripted.run(scripted.ScriptedConfig(episodes=0))

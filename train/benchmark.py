@@ -7,17 +7,15 @@ python train/benchmark.py --num-envs 1 64 --repeats 3 --json
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
 from statistics import median
 from typing import Any
 
-import tyro
-
 from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.train.run_log import note
+from maniskill_taskgrasp.train.script import run_script
 from maniskill_taskgrasp.train.speed import (
     Speed,
     available_cores,
@@ -150,8 +148,4 @@ def main(config: BenchmarkConfig) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main(tyro.cli(BenchmarkConfig, description=__doc__))
-    except InputError as error:
-        print(error, file=sys.stderr)
-        sys.exit(2)
+    run_script(main, BenchmarkConfig, __doc__)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
+from maniskill_taskgrasp.errors import InputError, echo
 from maniskill_taskgrasp.tasks.outcome import FAILURES
 from maniskill_taskgrasp.topology import TOPOLOGY_NAMES
 from maniskill_taskgrasp.train.batched_episodes import Episodes
@@ -14,6 +17,25 @@ from maniskill_taskgrasp.train.offers import Offer
 
 Json = dict[str, Any]
 DECIMALS = 4
+RESULTS_FILE = "results.json"
+
+
+def read_results(folder: Path) -> Json:
+    """The document of `taskgrasp evaluate --out`.
+
+    Raises:
+        InputError: there is none, or it is damaged.
+    """
+    path = folder / RESULTS_FILE
+    if not path.is_file():
+        raise InputError(f"no {path.name} in {echo(folder)}: `taskgrasp evaluate --out` makes it")
+    try:
+        document: Json = json.loads(path.read_text("utf-8"))
+        if {"config", "cells"} <= document.keys():
+            return document
+    except (OSError, ValueError, AttributeError):
+        pass
+    raise InputError(f"{echo(path)} is damaged: remove it, or choose another folder")
 
 
 def refused_cell(offer: Offer) -> Json:

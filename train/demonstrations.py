@@ -10,16 +10,19 @@ import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import gymnasium as gym
-import tyro
 from mani_skill.utils.wrappers.record import RecordEpisode
 from tqdm import tqdm
 
 import maniskill_taskgrasp  # noqa: F401  (Registers the task.)
+from maniskill_taskgrasp.assets.objects import library
 from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.pipeline import SEED_LIMIT
+from maniskill_taskgrasp.tasks.arguments import resolve_objects
 from maniskill_taskgrasp.tasks.closing import ConstantClosing
+from maniskill_taskgrasp.train.script import run_script
 
 TRIES = 20  # Episodes for each demonstration asked for, after which something must be wrong.
 SOURCE = "constant closing along the topology's synergy; the arm follows the planned path"
@@ -37,7 +40,7 @@ class DemonstrationConfig:
     """train, test, all, or names; each episode draws one of them."""
     noise: str = "paper"
     """How far the object is from where the planner thinks: none, paper, hard or blind."""
-    obs_mode: str = "state"
+    obs_mode: Literal["state", "state_dict", "none"] = "state"
     """What is recorded as observation; "none" keeps states and actions only."""
     seed: int = 0
     """Seed of the first episode; the next ones count on."""
@@ -47,20 +50,23 @@ class DemonstrationConfig:
     def __post_init__(self) -> None:
         if self.count < 1:
             raise InputError(f"--count must be 1 or more, got {self.count}")
+        if not 0 <= self.seed < SEED_LIMIT - TRIES * self.count:
+            raise InputError(f"--seed must be from 0 to below 2**32, got {self.seed}")
+        for name in resolve_objects(_one_or_list(self.objects)):
+            library.load(name)
 
 
 def record(config: DemonstrationConfig) -> dict[str, Any]:
     """Record, and say what was recorded.
 
     Raises:
-        RuntimeError: too few episodes succeed.
+        InputError: something does not exist, or too few episodes succeed.
     """
-    objects = config.objects[0] if len(config.objects) == 1 else list(config.objects)
     env = RecordEpisode(
         gym.make(
             "TaskGrasp-v0",
             topology=config.topology,
-            objects=objects,
+            objects=_one_or_list(config.objects),
             noise=config.noise,
             obs_mode=config.obs_mode,
         ),
@@ -83,7 +89,7 @@ def record(config: DemonstrationConfig) -> dict[str, Any]:
             episodes += 1
     env.close()
     if recorded < config.count:
-        raise RuntimeError(
+        raise InputError(
             f"only {recorded} of {episodes} episodes succeeded: see `taskgrasp evaluate`"
         )
     return {
@@ -91,6 +97,10 @@ def record(config: DemonstrationConfig) -> dict[str, Any]:
         "demonstrations": recorded,
         "episodes": episodes,
     }
+
+
+def _one_or_list(objects: tuple[str, ...]) -> str | list[str]:
+    return objects[0] if len(objects) == 1 else list(objects)
 
 
 def _succeeds(env: gym.Env, policy: ConstantClosing, seed: int) -> bool:
@@ -103,8 +113,4 @@ def _succeeds(env: gym.Env, policy: ConstantClosing, seed: int) -> bool:
 
 
 if __name__ == "__main__":
-    try:
-        print(json.dumps(record(tyro.cli(DemonstrationConfig, description=__doc__))))
-    except InputError as error:
-        print(error, file=sys.stderr)
-        sys.exit(2)
+    run_script(lambda config: print(json.dumps(record(config))), DemonstrationConfig, __doc__)

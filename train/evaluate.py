@@ -15,7 +15,6 @@ from dataclasses import asdict, dataclass, fields
 from multiprocessing import get_context
 from pathlib import Path
 
-import tyro
 from tqdm import tqdm
 
 from maniskill_taskgrasp.assets.objects.store import write_atomically
@@ -30,21 +29,23 @@ from maniskill_taskgrasp.train.batched_episodes import (
     run_jobs,
 )
 from maniskill_taskgrasp.train.cells import (
+    RESULTS_FILE,
     Json,
     by_topology,
     measured_cell,
     overall,
+    read_results,
     refused_cell,
     tally,
 )
 from maniskill_taskgrasp.train.evaluation_config import EvaluateConfig
 from maniskill_taskgrasp.train.offers import Offer, list_offers
+from maniskill_taskgrasp.train.script import run_script
 from maniskill_taskgrasp.train.traces import save_traces
 
 Searched = tuple[str, str]
 """Topology and source of an object."""
 
-RESULTS_FILE = "results.json"
 ELSEWHERE = ("out", "num_envs")  # Settings that change no result.
 
 
@@ -61,13 +62,13 @@ class Table:
         """The table in the output folder, to be gone on with, or an empty one.
 
         Raises:
-            InputError: the folder holds another evaluation's results.
+            InputError: the folder holds another evaluation's results, or damaged ones.
         """
         settings = _settings(config)
         path = config.out / RESULTS_FILE if config.out else None
         if path is None or not path.is_file():
             return cls(settings, path, {})
-        found = json.loads(path.read_text("utf-8"))
+        found = read_results(path.parent)
         differing = [n for n, value in settings.items() if found["config"].get(n) != value]
         if differing:
             raise InputError(
@@ -193,12 +194,8 @@ def _measure(
 def _search(offer: Offer, config: EvaluateConfig) -> FoundGrasp:
     assert offer.topology is not None
     # The same grasps whatever the policy, so that policies can be compared.
-    budget = _budget(config.search, config.seed, config.noise)
+    budget = SearchBudget.on_object(config.search, config.seed, config.noise)
     return find_grasp(offer.source, offer.topology, config.presentation, budget, processes=1)
-
-
-def _budget(generations: int, seed: int, noise: str) -> SearchBudget:
-    return SearchBudget(generations=generations, seed=seed, follow=True).meeting(noise)
 
 
 def _settings(config: EvaluateConfig) -> Json:
@@ -215,7 +212,7 @@ def _settings(config: EvaluateConfig) -> Json:
 
 def _search_note(settings: Json, cells: list[Json]) -> Json:
     """That grasps were searched on the evaluated objects, and how much simulation that took."""
-    budget = _budget(settings["search"], settings["seed"], settings["noise"])
+    budget = SearchBudget.on_object(settings["search"], settings["seed"], settings["noise"])
     return {
         "on_evaluated_objects": True,
         "generations": budget.generations,
@@ -250,4 +247,4 @@ def main(config: EvaluateConfig) -> None:
 
 
 if __name__ == "__main__":
-    main(tyro.cli(EvaluateConfig))
+    run_script(main, EvaluateConfig)

@@ -20,7 +20,7 @@ class EvaluateConfig:
     """Topologies to use on every object, or "all"; left out, the selector chooses one for each
     object (action "picking up")."""
     objects: tuple[str, ...] = ()
-    """Library names, mesh files, train, test or all; the test objects where it is left out."""
+    """Library names, mesh files, train, test, all or imported; left out, the test objects."""
     mesh_dir: Path | None = None
     """Folder of meshes that are the objects."""
     table: str | None = None
@@ -39,8 +39,8 @@ class EvaluateConfig:
     """How the object is offered: auto, table, stand, rail, rack or holder."""
     policy: str = "constant"
     """"constant" closes all the way; with "follow" the palm also follows the object by what is
-    sensed; "guarded" also waits with what touches first; "learned" is the shipped policy; or a
-    checkpoint file."""
+    sensed; "guarded" also waits with what touches first; "probing" also comes down feeling, for
+    touch alone; "learned" is the shipped policy; or a checkpoint file."""
     distance: str | None = None
     """What the distances know: exact, noisy or none; left out, as the policy was trained."""
     search: int = 0
@@ -62,7 +62,7 @@ class EvaluateConfig:
         if self.num_envs > MAX_ENVS:
             raise InputError(f"--num-envs must be at most {MAX_ENVS}, got {self.num_envs}")
         if self.table is not None and self.table not in TABLES:
-            raise unknown_name("table", self.table, TABLES, "paper, feasible")
+            raise unknown_name("table", self.table, TABLES)
         given = [flag for flag, value in self._sources().items() if value]
         if len(given) > 1:
             raise InputError(f"{' and '.join(given)} each say what to grasp: give one of them")

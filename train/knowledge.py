@@ -11,9 +11,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-import tyro
-
 from maniskill_taskgrasp.topology import TOPOLOGY_NAMES
+from maniskill_taskgrasp.train.script import run_script
 
 DEFAULT_OUT = Path(__file__).resolve().parent.parent / "assets" / "knowledge.json"
 PARAMETER_COLUMNS = {"force": "Force", "constraint": "Constraint", "task_class": "Class"}
@@ -79,4 +78,4 @@ def main(config: KnowledgeConfig) -> None:
 
 
 if __name__ == "__main__":
-    main(tyro.cli(KnowledgeConfig))
+    run_script(main, KnowledgeConfig)

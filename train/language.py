@@ -20,7 +20,6 @@ from pathlib import Path
 
 import numpy as np
 import torch
-import tyro
 
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.language.actions import HAND_OVER, NO_ACTION, head_of
@@ -40,6 +39,7 @@ from maniskill_taskgrasp.train.instructions import (
     frames,
 )
 from maniskill_taskgrasp.train.language_decision import fit_decision
+from maniskill_taskgrasp.train.script import run_script
 
 DEFAULT_OUT = Path(__file__).resolve().parent.parent / "assets" / "checkpoints" / "language.npz"
 
@@ -254,4 +254,4 @@ def train(config: LanguageConfig) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    print(json.dumps(train(tyro.cli(LanguageConfig)), indent=2))
+    run_script(lambda config: print(json.dumps(train(config), indent=2)), LanguageConfig)

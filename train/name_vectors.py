@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import tyro
 
 from maniskill_taskgrasp.language.encoder import load_encoder
 from maniskill_taskgrasp.selection.names import name_vectors
+from maniskill_taskgrasp.train.script import run_script
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,4 +40,4 @@ def main(config: NameVectorsConfig) -> None:
 
 
 if __name__ == "__main__":
-    main(tyro.cli(NameVectorsConfig))
+    run_script(main, NameVectorsConfig)

@@ -16,6 +16,7 @@ from maniskill_taskgrasp.assets.objects.presentation import KINDS
 from maniskill_taskgrasp.errors import InputError, echo, unknown_name
 from maniskill_taskgrasp.pipeline import Pipeline, choose_topology
 from maniskill_taskgrasp.selection.feasibility import feasible
+from maniskill_taskgrasp.tasks.arguments import DISTANCES, one_of
 from maniskill_taskgrasp.tasks.noise import resolve_noise
 from maniskill_taskgrasp.tasks.placement import place
 from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
@@ -61,8 +62,10 @@ def list_offers(config: EvaluateConfig) -> list[Offer]:
     """
     known = ("auto", "stand", *KINDS)
     if config.presentation not in known:
-        raise unknown_name("presentation", config.presentation, known, ", ".join(known))
+        raise unknown_name("presentation", config.presentation, known)
     resolve_noise(config.noise)
+    if config.distance is not None:
+        one_of("--distance", config.distance, DISTANCES)
     if config.table is not None:
         # A committed pair is tried even if the hand's limits were changed since.
         offers = [
@@ -76,9 +79,24 @@ def list_offers(config: EvaluateConfig) -> list[Offer]:
         offers = list(_of_objects(config))
     if not offers:
         raise InputError("there is nothing to evaluate: no object or sentence was found")
-    distinct = list({offer.key: offer for offer in offers}.values())
+    distinct = _told_apart(list(dict.fromkeys(offers)))
     chosen = spread(distinct, config.limit) if config.limit else distinct
     return [_presented(offer, config.presentation) for offer in chosen]
+
+
+def _told_apart(offers: list[Offer]) -> list[Offer]:
+    """The offers, objects from different files that share a name numbered."""
+    sources: dict[str, list[str]] = {}
+    for offer in offers:
+        seen = sources.setdefault(offer.object, [])
+        if offer.source not in seen:
+            seen.append(offer.source)
+
+    def name(offer: Offer) -> str:
+        number = sources[offer.object].index(offer.source) + 1
+        return offer.object if number == 1 else f"{offer.object} {number}"
+
+    return [replace(offer, object=name(offer)) for offer in offers]
 
 
 def spread(offers: list[Offer], limit: int) -> list[Offer]:

@@ -10,12 +10,12 @@ import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-import tyro
 from tyro.conf import Positional
 
-from maniskill_taskgrasp.errors import InputError, echo
-from maniskill_taskgrasp.train.cells import Json
+from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.train.cells import Json, read_results
 from maniskill_taskgrasp.train.intervals import Z_95
+from maniskill_taskgrasp.train.script import run_script
 
 SAME = ("noise", "seed", "presentation", "episodes")  # Settings without which nothing is paired.
 
@@ -105,19 +105,11 @@ class PairedConfig:
     """Another, with other policy and the rest the same."""
 
 
-def _load(folder: Path) -> Json:
-    try:
-        document: Json = json.loads((folder / "results.json").read_text("utf-8"))
-    except (OSError, ValueError):
-        raise InputError(f"no results.json in {echo(folder)}") from None
-    return document
-
-
 def main(config: PairedConfig) -> None:
     """Print one JSON document."""
-    results = compare_results(_load(config.a), _load(config.b))
+    results = compare_results(read_results(config.a), read_results(config.b))
     print(json.dumps({name: asdict(value) for name, value in results.items()}, indent=1))
 
 
 if __name__ == "__main__":
-    main(tyro.cli(PairedConfig))
+    run_script(main, PairedConfig)

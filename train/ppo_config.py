@@ -10,7 +10,6 @@ from typing import Any, Literal
 from maniskill_taskgrasp.errors import InputError, echo
 
 TASK_GRASP = "TaskGrasp-v0"
-BATCHED_ENVS = 16  # From this many environments on, an upstream rollout of 50 steps is enough data.
 CPU_ROLLOUT = 2048  # Samples per update that a few environments on a CPU collect.
 
 Preset = Literal["paper"]
@@ -113,7 +112,7 @@ class PPOConfig:
     objects: tuple[str, ...] | None = None
     """TaskGrasp: "train", "test", "all", or names and mesh files."""
     presentation: str | None = None
-    """TaskGrasp: "table", "stand" or "auto"."""
+    """TaskGrasp: auto, stand, table, rail, rack or holder."""
     noise: str | None = None
     """TaskGrasp: "none", "paper", "hard" or "blind"."""
     distance: str | None = None
@@ -169,7 +168,7 @@ class PPOConfig:
         return self.save_freq or self.eval_freq
 
 
-CPU_TASK_GRASP: dict[str, Any] = {
+TASK_GRASP_DEFAULTS: dict[str, Any] = {
     "total_timesteps": 1_000_000,
     "num_envs": 64,
     "num_eval_envs": 50,
@@ -184,8 +183,8 @@ CPU_OTHER: dict[str, Any] = {"num_envs": 1, "num_eval_envs": 1, "num_steps": CPU
 
 PRESETS: dict[str, dict[str, Any]] = {
     # The paper's learning rate, discount, clipping range and sample budget; 20 updates of 2500.
-    # Failed episodes must run on (CPU_TASK_GRASP): with a reward that is negative until something
-    # is touched, ended ones teach to fail soon.
+    # Failed episodes must run on (TASK_GRASP_DEFAULTS): with a reward that is negative until
+    # something is touched, ended ones teach to fail soon.
     "paper": {
         "env_id": TASK_GRASP,
         "obs": "paper",
@@ -218,7 +217,7 @@ def default_config(env_id: str, preset: Preset | None, has_cuda: bool) -> PPOCon
     """
     config = PPOConfig(env_id=env_id, preset=preset)
     if is_task_grasp(env_id):
-        config = replace(config, **CPU_TASK_GRASP)
+        config = replace(config, **TASK_GRASP_DEFAULTS)
     elif not has_cuda:
         config = replace(config, **CPU_OTHER)
     if preset is None:

@@ -16,7 +16,6 @@ from pathlib import Path
 
 import numpy as np
 import torch
-import tyro
 from scipy.cluster.vq import kmeans2
 from tqdm import tqdm
 
@@ -33,6 +32,7 @@ from maniskill_taskgrasp.tasks.placement import place
 from maniskill_taskgrasp.tasks.pose_search import GraspTrials
 from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
 from maniskill_taskgrasp.train.batched_episodes import Conditions, Job, run_jobs
+from maniskill_taskgrasp.train.script import run_script
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 
@@ -223,4 +223,4 @@ def _line(topology: Topology, result: SearchResult) -> str:
 
 
 if __name__ == "__main__":
-    main(tyro.cli(PregraspConfig))
+    run_script(main, PregraspConfig)

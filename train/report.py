@@ -6,22 +6,24 @@ python train/report.py reports/table1
 from __future__ import annotations
 
 import base64
-import json
-import sys
 from collections.abc import Iterator
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from tyro.conf import Positional
+
 from maniskill_taskgrasp.assets.objects import library
 from maniskill_taskgrasp.assets.objects.store import write_atomically
-from maniskill_taskgrasp.errors import InputError, echo
+from maniskill_taskgrasp.errors import InputError
 from maniskill_taskgrasp.tasks.outcome import FAILURES
 from maniskill_taskgrasp.tasks.rendering import rendering_available
 from maniskill_taskgrasp.topology import resolve_topology
 from maniskill_taskgrasp.train.batched_episodes import Trace
-from maniskill_taskgrasp.train.cells import Json
-from maniskill_taskgrasp.train.traces import load_trace
+from maniskill_taskgrasp.train.cells import Json, read_results
+from maniskill_taskgrasp.train.script import run_script
+from maniskill_taskgrasp.train.traces import file_label, load_trace
 
 PAGE = "report.html"
 TEMPLATE = "report.html.jinja"
@@ -32,21 +34,31 @@ def write_report(folder: Path) -> Path:
     """Write report.html and its PNGs beside results.json.
 
     Raises:
-        InputError: the folder holds no results, or matplotlib is missing.
+        InputError: the folder holds no results or damaged ones, or matplotlib is missing.
     """
-    path = folder / "results.json"
-    if not path.is_file():
-        raise InputError(f"no results.json in {echo(folder)}: `taskgrasp evaluate --out` makes it")
+    document = read_results(folder)
     try:
         import matplotlib  # noqa: F401
     except ImportError:
         raise InputError(
             "the report needs matplotlib: pip install 'maniskill-taskgrasp[train]'"
         ) from None
-    document = json.loads(path.read_text("utf-8"))
     page = folder / PAGE
     write_atomically(page, _page(document, folder).encode())
     return page
+
+
+@dataclass(frozen=True)
+class ReportConfig:
+    """Write the report of an evaluation again."""
+
+    folder: Positional[Path]
+    """Folder of `taskgrasp evaluate --out`."""
+
+
+def main(config: ReportConfig) -> None:
+    """Write the page and print where it is."""
+    print(write_report(config.folder))
 
 
 def _page(document: Json, folder: Path) -> str:
@@ -109,7 +121,8 @@ def _example(cell: Json, trace: Trace, kind: str, config: Json, folder: Path) ->
     from maniskill_taskgrasp.train import figures
 
     title = f"{cell['topology']}, {cell['object']} ({cell['presentation']})"
-    name = f"{kind}-{resolve_topology(cell['topology']).slug}-{cell['object']}".replace(" ", "_")
+    name = f"{kind}-{resolve_topology(cell['topology']).slug}"
+    name = f"{name}-{file_label(cell['object'], cell['text'] or '')}"
     figure = figures.png(figures.example(trace, library.load(cell["source"]), title))
     entry = {"title": title, "kind": kind, "seed": trace.seed, "film": None, "outcome": None}
     entry["figure"] = _saved(folder, name, figure)
@@ -137,6 +150,4 @@ def _interval(bounds: list[float]) -> str:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: python train/report.py FOLDER")
-    print(write_report(Path(sys.argv[1])))
+    run_script(main, ReportConfig)

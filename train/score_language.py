@@ -17,9 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-import tyro
-
 from maniskill_taskgrasp.language import Instruction, Rejected, parse
+from maniskill_taskgrasp.train.script import run_script
 
 DATA = Path(__file__).resolve().parent.parent / "tests" / "data"
 Z = 1.96  # Two-sided 95 % quantile of the normal distribution.
@@ -173,4 +172,4 @@ def main(config: ScoreConfig) -> None:
 
 
 if __name__ == "__main__":
-    main(tyro.cli(ScoreConfig))
+    run_script(main, ScoreConfig)

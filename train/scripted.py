@@ -8,17 +8,14 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
-import tyro
-
 from maniskill_taskgrasp.assets.objects.folders import HOME_VARIABLE, cache_folder
-from maniskill_taskgrasp.errors import InputError
+from maniskill_taskgrasp.train.script import run_script
 
 FRICTION = 1.0
 DENSITY = 500.0  # [kg/m^3] 31 to 250 g: within what the pad topologies carry (grasping facts, 4).
@@ -57,21 +54,20 @@ def run(config: ScriptedConfig) -> dict[str, Any]:
         What `taskgrasp evaluate --json` prints.
 
     Raises:
-        InputError: a negative setting.
+        InputError: no episodes, or a negative setting.
     """
     from maniskill_taskgrasp.train.evaluate import evaluate
     from maniskill_taskgrasp.train.evaluation_config import EvaluateConfig
 
+    evaluation = EvaluateConfig(
+        objects=("imported",),
+        topologies=TOPOLOGIES,
+        episodes=config.episodes,
+        search=config.search,
+        seed=config.seed,
+    )
     with _library_of_primitives():
-        return evaluate(
-            EvaluateConfig(
-                objects=("imported",),
-                topologies=TOPOLOGIES,
-                episodes=config.episodes,
-                search=config.search,
-                seed=config.seed,
-            )
-        )
+        return evaluate(evaluation)
 
 
 @contextmanager
@@ -117,8 +113,4 @@ def main(config: ScriptedConfig) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main(tyro.cli(ScriptedConfig, description=__doc__))
-    except InputError as error:
-        print(error, file=sys.stderr)
-        sys.exit(2)
+    run_script(main, ScriptedConfig, __doc__)

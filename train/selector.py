@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import torch
-import tyro
 from tqdm import tqdm
 
 from maniskill_taskgrasp.errors import InputError
@@ -34,6 +33,7 @@ from maniskill_taskgrasp.selection.scoring import evaluate, paired_intervals
 from maniskill_taskgrasp.selection.splits import FOLDS, SPLITS
 from maniskill_taskgrasp.selection.targets import leaks
 from maniskill_taskgrasp.selection.tuning import tuned
+from maniskill_taskgrasp.train.script import run_script
 
 CHECKPOINT = Path(__file__).resolve().parent.parent / "assets" / "checkpoints" / "selector.npz"
 
@@ -150,7 +150,4 @@ def main(config: SelectorConfig) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main(tyro.cli(SelectorConfig))
-    except InputError as error:
-        raise SystemExit(f"selector: {error}") from None
+    run_script(main, SelectorConfig)

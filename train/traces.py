@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+import zlib
 from dataclasses import fields
 from pathlib import Path
 
@@ -18,8 +19,13 @@ KINDS = ("success", "miss")
 
 def trace_path(folder: Path, topology_slug: str, name: str, text: str, kind: str) -> Path:
     """File of one example episode."""
-    label = re.sub(r"\W+", "_", f"{name} {text}".strip())[:80]
-    return folder / TRACE_FOLDER / f"{topology_slug}--{label}--{kind}.npz"
+    return folder / TRACE_FOLDER / f"{topology_slug}--{file_label(name, text)}--{kind}.npz"
+
+
+def file_label(name: str, text: str) -> str:
+    """Part of a file's name that tells objects, and the sentences that name them, apart."""
+    label = re.sub(r"\W+", "_", name)[:80]
+    return f"{label}-{zlib.crc32(text.encode()):08x}" if text else label
 
 
 def save_traces(folder: Path, job: Job, episodes: Episodes) -> None:

@@ -49,7 +49,6 @@ def _posture(
 
 
 PINCH_FINGER = ((0.35, 0.55), (1.57, 0.80))
-WRAP_FINGER = ((0.40, 0.60), (1.57, 1.57))
 PINCH_THUMB = ((1.33, 0.34), (1.33, 0.75))
 
 POSTURES: dict[str, Posture] = {

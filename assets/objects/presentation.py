@@ -62,7 +62,7 @@ def present(model: ObjectModel, presentation: str = "auto", rest: int = 0) -> Pr
         return _on_table(model.resting_poses[rest], "table was asked for")
     if presentation not in ("auto", "stand"):
         known = ("auto", "stand", *KINDS)
-        raise unknown_name("presentation", presentation, known, ", ".join(known))
+        raise unknown_name("presentation", presentation, known)
     kind, reason = choose(model, rest)
     if presentation == "stand" and kind == "table":
         kind, reason = _stand_kind(model), "a stand was asked for"

@@ -15,7 +15,6 @@ from maniskill_taskgrasp.knowledge import Affordance
 from maniskill_taskgrasp.topology import TOPOLOGY_NAMES
 
 SHA256 = "71af44a9255ce1ef58bd231114b107f1b2b403cf5bc110103cfd409c14b59c3d"
-ROWS = 6554
 PLATFORM = "platform"
 """16th group of the file, an open-palm support: no topology, so its 67 rows are dropped."""
 

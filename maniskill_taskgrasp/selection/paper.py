@@ -15,7 +15,7 @@ from torch import Tensor, nn
 
 from maniskill_taskgrasp.knowledge import load_knowledge
 from maniskill_taskgrasp.selection.dataset import NUM_TOPOLOGIES, GraspTable
-from maniskill_taskgrasp.selection.features import CATEGORIES, indicators
+from maniskill_taskgrasp.selection.features import indicators
 from maniskill_taskgrasp.selection.metrics import OPPOSITION_OF, PIP_OF
 from maniskill_taskgrasp.topology import OPPOSITIONS, PIPS
 
@@ -76,13 +76,6 @@ def parameter_indicators(table: GraspTable) -> np.ndarray:
     return np.hstack(
         [getattr(table, c)[:, None] == np.array(v) for c, v in PARAMETER_VALUES.items()]
     )
-
-
-def paper_width(duration: bool = True) -> int:
-    """127, or 126 without Duration."""
-    indicator_lists = (*CATEGORIES.values(), *PARAMETER_VALUES.values())
-    width = sum(map(len, indicator_lists)) + len(load_knowledge().actions)
-    return width + (len(CONTINUOUS) if duration else len(CONTINUOUS) - 1)
 
 
 def augmented(

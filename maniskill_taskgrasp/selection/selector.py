@@ -143,10 +143,10 @@ def _likelihood(action: ActionFacts, parameters: Mapping[str, str]) -> float:
     product = 1.0
     for name, value in parameters.items():
         if name not in PARAMETERS:
-            raise unknown_name("task parameter", name, PARAMETERS, ", ".join(PARAMETERS))
+            raise unknown_name("task parameter", name, PARAMETERS)
         known = sorted({v for a in load_knowledge().actions.values() for v in a.parameters[name]})
         if value not in known:
-            raise unknown_name(f"value of {name}", value, known, ", ".join(known))
+            raise unknown_name(f"value of {name}", value, known)
         rows = action.parameters[name]
         product *= (rows.get(value, 0) + 1) / (sum(rows.values()) + len(known))
     return product

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
-Weighting = Literal["row", "pair"]
-
 PAPER = {"hit@1": 1.0, "match@3": 0.986, "o": 0.859, "p": 0.863}
 """Li et al. 2021, test rows of their own split."""
 MEMORISED = {"o": 0.902, "p": 0.896}
