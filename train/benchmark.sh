@@ -49,6 +49,7 @@ for noise in blind hard; do  # Searches go on under wide noise: up to 768 trials
     row constant exact
     row hover-rule noisy
     row guarded none
+    row probing none
     for distance in exact noisy none; do
         row follow "$distance"
         row learned "$distance"
