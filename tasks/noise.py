@@ -25,6 +25,11 @@ class Noise:
     mass: tuple[float, float] = (1.0, 1.0)
     """Factor on the object's mass."""
 
+    @property
+    def draws_scene(self) -> bool:
+        """Whether friction or mass are drawn, which happens when a scene is built."""
+        return self.friction is not None or self.mass != (1.0, 1.0)
+
 
 NOISES: dict[str, Noise] = {
     "none": Noise(),

@@ -95,13 +95,9 @@ class TaskGraspEnv(CpuBatchMixin, BaseEnv):
         self._obs = one_of("obs", obs, OBSERVATIONS)
         self._weights = rewards.RewardWeights()
         if kwargs.get("reconfiguration_freq") is None and kwargs.get("num_envs", 1) == 1:
-            kwargs["reconfiguration_freq"] = int(self._draws_scene())
+            drawn = len(self.object_names) > 1 or self._noise.draws_scene
+            kwargs["reconfiguration_freq"] = int(drawn)
         super().__init__(*args, robot_uids=robot_uids, control_mode=control_mode, **kwargs)
-
-    def _draws_scene(self) -> bool:
-        """Whether building a scene draws anything: an object, friction or mass."""
-        noise = self._noise
-        return len(self.object_names) > 1 or noise.friction is not None or noise.mass != (1.0, 1.0)
 
     @property
     def _default_sim_config(self) -> SimConfig:

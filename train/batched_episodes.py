@@ -124,9 +124,7 @@ def run_jobs(jobs: Sequence[Job], conditions: Conditions) -> list[Episodes]:
     rounds = math.ceil(conditions.episodes / each)
     seeds = np.array([episode_seeds(conditions.seed, job, rounds * each) for job in jobs])
     spread = [job for job in jobs for _ in range(each)]
-    noise = resolve_noise(conditions.noise)
-    # Friction and mass are drawn when a scene is built, so each episode needs a new one.
-    redraw = noise.friction is not None or noise.mass != (1.0, 1.0)
+    redraw = resolve_noise(conditions.noise).draws_scene  # Then each episode needs a new scene.
     env: Any = gym.make(
         "TaskGrasp-v0",
         num_envs=len(spread),
