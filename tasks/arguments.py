@@ -10,6 +10,7 @@ from maniskill_taskgrasp.topology import TOPOLOGIES, Topology, resolve_topology
 
 DISTANCES = ("exact", "noisy", "none")
 OBSERVATIONS = ("full", "paper")
+GROUPS = ("train", "test", "all")
 
 
 def one_of(name: str, value: str, allowed: Sequence[str]) -> str:
@@ -42,15 +43,13 @@ def resolve_topologies(topology: str | Sequence[str], control_mode: str | None) 
 
 
 def resolve_objects(objects: str | Sequence[str]) -> list[str]:
-    """Object names or mesh files, from one, several, a split ("train", "test") or "all".
+    """Object names or mesh files, from one or several, a split ("train", "test") or "all".
 
     Raises:
         InputError: an empty list.
     """
-    if isinstance(objects, str):
-        if objects in ("train", "test"):
-            return list(library.names(objects))
-        return list(library.names()) if objects == "all" else [objects]
-    if not objects:
+    asked = [objects] if isinstance(objects, str) else list(objects)
+    if not asked:
         raise InputError("objects must name at least one object, got an empty list")
-    return list(objects)
+    named = lambda name: library.names(name) if name in GROUPS else (name,)  # noqa: E731
+    return [resolved for name in asked for resolved in named(name)]

@@ -73,24 +73,15 @@ def roll_out(
     )
     try:
         policy = make_policy(env)
-        placement = env.unwrapped.placements[0]
-        lifts, failures, forms = [], [], []
-        for episode in range(episodes):
-            film = video if episode == 0 else None
-            lift, failure, form = _episode(env, policy, seed + episode, options, film)
-            lifts.append(lift)
-            failures.append(failure)
-            forms.append(form)
+        shown = env.unwrapped.placements[0].presentation
+        outcomes = [
+            _episode(env, policy, seed + i, options, None if i else video) for i in range(episodes)
+        ]
     finally:
         env.close()
-    return Rollout(
-        presentation=f"{placement.presentation.kind}: {placement.presentation.reason}",
-        lift_m=lifts,
-        failure=failures,
-        fidelity=forms,
-        video=None if video is None else str(video),
-        notes=notes,
-    )
+    lifts, failures, forms = (list(column) for column in zip(*outcomes, strict=True))
+    film = None if video is None else str(video)
+    return Rollout(f"{shown.kind}: {shown.reason}", lifts, failures, forms, film, notes)
 
 
 def reset_options(grasps: Sequence[Grasp]) -> dict[str, Any]:

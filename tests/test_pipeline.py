@@ -38,7 +38,7 @@ def test_choose_topology_says_why_nothing_fits():
     ("options", "message"),
     [
         ({"episodes": 0}, "episodes must be at least 1, got 0"),
-        ({"seed": -1}, "seed must be 0 or more, got -1"),
+        ({"seed": -1}, "seed must be from 0 to 2"),
         ({"topology": "precision pad abd 2-9"}, "unknown topology 'precision pad abd 2-9'"),
     ],
 )

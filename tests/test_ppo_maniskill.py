@@ -95,6 +95,7 @@ def test_a_stock_policy_loads_and_acts(stock_run):
         ("--env-id PickCube-v1 --reward-mode nosuch", "nosuch"),
         ("--env-id TaskGrasp-v0 --noise nosuch", "hard"),
         ("--env-id TaskGrasp-v0 --topology nosuch", "nosuch"),
+        ("--env-id PickCube-v1 --sim-backend nosuch", "physx_cuda"),
         (
             "--env-id TaskGrasp-v0 --partial-reset --reconfiguration-freq 1",
             "--no-partial-reset",

@@ -20,6 +20,8 @@ def test_topologies_are_one_some_or_all():
     assert resolve_topologies("precision pad abd 2", f"pd_synergy_{pad.slug}") == [pad]
     assert resolve_topologies([pad.name, pad.name], None) == [pad, pad]
     assert resolve_topologies("all", "pd_synergy") == list(TOPOLOGIES)
+    with pytest.raises(InputError, match="at least one topology"):
+        resolve_topologies([], None)
 
 
 def test_a_control_mode_of_another_topology_is_refused():
@@ -33,6 +35,7 @@ def test_objects_are_one_some_or_a_split():
     assert resolve_objects(["marker", "a.stl"]) == ["marker", "a.stl"]
     train, test = resolve_objects("train"), resolve_objects("test")
     assert sorted(train + test) == sorted(resolve_objects("all"))
+    assert resolve_objects(["train", "a.stl"]) == [*train, "a.stl"]
     assert not set(train) & set(test)
     with pytest.raises(InputError, match="at least one object"):
         resolve_objects([])

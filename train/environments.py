@@ -17,6 +17,7 @@ from maniskill_taskgrasp.train.training_pairs import training_pairs
 
 TASK_FLAGS = (*INTERFACE_FLAGS, "topology", "objects", "presentation", "noise", "reward_mode")
 SEED_LIMIT = 2**31
+SIM_BACKENDS = ("auto", "physx_cpu", "physx_cpu_batched", "physx_cuda")
 TRAINING, EVALUATION = 0, 1  # Streams of seeds that never meet.
 
 
@@ -62,13 +63,13 @@ def make_env(config: PPOConfig, num_envs: int, device: str, **kwargs: Any) -> gy
     try:
         return gym.make(config.env_id, num_envs=num_envs, **arguments)
     except Exception as error:
-        refusal = _refusal(error, config.env_id, num_envs)
+        refusal = _refusal(error, config.env_id, num_envs, arguments["sim_backend"])
         if refusal is None:
             raise
         raise refusal from error
 
 
-def _refusal(error: Exception, env_id: str, num_envs: int) -> InputError | None:
+def _refusal(error: Exception, env_id: str, num_envs: int, sim_backend: str) -> InputError | None:
     """What a user should be told when a task could not be made; None where it is no mistake."""
     text = str(error)
     if isinstance(error, gym.error.UnregisteredEnv):
@@ -80,6 +81,8 @@ def _refusal(error: Exception, env_id: str, num_envs: int) -> InputError | None:
             f"{echo(env_id)} cannot run {num_envs} environments in one process on a CPU: use "
             "--num-envs 1 (or torchrun with one each), --env-vectorization cpu, or a CUDA GPU"
         )
+    if isinstance(error, KeyError) and error.args == (sim_backend,):
+        return unknown_name("--sim-backend", sim_backend, SIM_BACKENDS)
     unknown = re.search(r"unexpected keyword argument '(\w+)'", text)
     if isinstance(error, TypeError) and unknown is not None:
         flag = "--" + unknown[1].replace("_", "-")

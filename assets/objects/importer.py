@@ -76,12 +76,32 @@ def object_from_mesh(
     if mass is None:
         mass = float(np.clip(DENSITY * body.volume, MIN_MASS, MAX_GUESS))
         notes.append(f"mass {mass:.3f} kg guessed at {DENSITY:.0f} kg/m^3, at most {MAX_GUESS} kg")
-    elif not MIN_MASS <= mass <= MAX_MASS:
+    model = _described(name, mesh, body, parts, mass, _upright(placing[:3, :3], origin))
+    model = replace(
+        model, source=origin.source, licence=origin.licence, watertight=closed, mesh=lambda: drawn
+    )
+    return _rested(model), tuple(notes)
+
+
+def _described(
+    name: str,
+    mesh: trimesh.Trimesh,
+    body: trimesh.Trimesh,
+    parts: tuple[Part, ...],
+    mass: float,
+    upright: Array,
+) -> ObjectModel:
+    """The object by its shape; `body` is the closed one whose volume counts.
+
+    Raises:
+        InputError: a mass that no hand can take.
+    """
+    if not MIN_MASS <= mass <= MAX_MASS:
         raise InputError(f"mass {mass} kg: from {MIN_MASS} to {MAX_MASS} kg would do")
     com, unit_inertia = body.center_mass, body.moment_inertia / body.volume
     held_center, held = middle_box(mesh, com)
     points = np.concatenate([mesh.vertices, _corners(parts)])
-    model = ObjectModel(
+    return ObjectModel(
         name=name,
         extents_m=_triple(mesh.extents),
         mass_kg=mass,
@@ -92,20 +112,13 @@ def object_from_mesh(
         affordance=describe(name, held.tolist(), mass, points),
         split="imported",
         parts=parts,
-        resting_poses=tuple(
-            candidate_poses(parts, com, unit_inertia, _upright(placing[:3, :3], origin))
-        ),
+        resting_poses=tuple(candidate_poses(parts, com, unit_inertia, upright)),
         grasped_center=_triple(held_center),
         grasped_extents_m=_triple(held),
         material="plastic",
         category="imported",
-        source=origin.source,
-        licence=origin.licence,
-        watertight=closed,
         volume_m3=float(body.volume),
-        mesh=lambda: drawn,
     )
-    return _rested(model), tuple(notes)
 
 
 def _triple(row: Array) -> tuple[float, float, float]:
