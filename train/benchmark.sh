@@ -26,9 +26,6 @@ done
 python train/ship.py "$RUNS/noisy_1/final_ckpt.pt" assets/checkpoints/policy_distance.pt
 python train/ship.py "$RUNS/none_1/final_ckpt.pt" assets/checkpoints/policy_touch.pt
 
-# The paper's learner, one topology: 50 000 samples.
-python train/ppo.py --preset paper --topology "precision pad abd 2-3" --runs-dir "$RUNS" --exp-name paper
-
 table() { # name, flags
     taskgrasp evaluate --seed 2026 --out "$OUT/$1" "${@:2}"
 }
@@ -37,9 +34,21 @@ table table1-own --table paper --search 5 --episodes 100 "${FOLLOW[@]}"
 table table1-stored --table paper --episodes 20 "${FOLLOW[@]}"
 table feasible-own --table feasible --search 5 --episodes 10 "${FOLLOW[@]}"
 table feasible-stored --table feasible --episodes 10 "${FOLLOW[@]}"
-for policy in constant "$RUNS/paper/final_ckpt.pt"; do
-    table "paper-preset-$(tr / - <<< "$policy")" --topologies "precision pad abd 2-3" --objects "small knob" rod screw \
-        --search 5 --episodes 100 --policy "$policy"
+# The paper's learner, a run for each topology of Table I (50 000 samples), beside constant closing.
+python - <<'PAIRS' | while IFS='|' read -r topology first second third; do
+import json
+from itertools import groupby
+pairs = json.load(open("assets/evaluation_pairs.json"))["paper"]
+for topology, group in groupby(pairs, key=lambda pair: pair["topology"]):
+    print(topology, *(pair["object"] for pair in group), sep="|")
+PAIRS
+    name=paper-$(tr ' ' - <<< "$topology")
+    python train/ppo.py --preset paper --topology "$topology" --runs-dir "$RUNS" --exp-name "$name" < /dev/null
+    for policy in constant "$RUNS/$name/final_ckpt.pt"; do
+        label=$([ "$policy" = constant ] && echo constant || echo learned)
+        table "$name-$label" --topologies "$topology" --objects "$first" "$second" "$third" \
+            --search 5 --episodes 100 --policy "$policy" < /dev/null
+    done
 done
 for noise in blind hard; do  # Searches go on under wide noise: up to 768 trials more a pair.
     row() { # policy, distance
@@ -70,4 +79,7 @@ fi
 if [ -n "${FURNITURE:-}" ]; then
     taskgrasp objects import "$FURNITURE"
     table furniture --objects imported --search 1 --episodes 10 "${FOLLOW[@]}"
+    table furniture-stored --objects imported --episodes 10 "${FOLLOW[@]}"
 fi
+# Eight primitives, constant closing, friction 1 (docs/cpu_batch.md).
+python train/scripted.py --json > "$OUT/scripted.json"
