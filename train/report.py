@@ -121,8 +121,8 @@ def _example(cell: Json, trace: Trace, kind: str, config: Json, folder: Path) ->
     from maniskill_taskgrasp.train import figures
 
     title = f"{cell['topology']}, {cell['object']} ({cell['presentation']})"
-    name = f"{kind}-{resolve_topology(cell['topology']).slug}"
-    name = f"{name}-{file_label(cell['object'], cell['text'] or '')}"
+    label = file_label(cell["object"], cell["text"] or "")
+    name = f"{kind}-{resolve_topology(cell['topology']).slug}-{label}"
     figure = figures.png(figures.example(trace, library.load(cell["source"]), title))
     entry = {"title": title, "kind": kind, "seed": trace.seed, "film": None, "outcome": None}
     entry["figure"] = _saved(folder, name, figure)

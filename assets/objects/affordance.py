@@ -17,10 +17,8 @@ Array = NDArray[np.float64]
 
 ZINGG = 2 / 3  # Ratio of neighbouring extents above which they count as alike.
 CAP_LENGTH, CAP_MASS = 0.15, 1.0  # [m], [kg] where the data set caps its measurements.
-WIDE = (
-    0.10  # [m] Of 50 objects of the data set that are wider and at most 8 cm thin, people hold 46
-)
-# across the thinnest extent, and of the 8 held across the rim of a disk only one is wider.
+WIDE = 0.10  # [m] 46 of the data set's 50 objects that are wider, and at most 8 cm thin, are held
+# across their thinnest extent; of its 8 disks that are held across the rim one is wider.
 HALF_HAND = 0.02  # [m] Half the breadth of two fingers, which close on so much of the length.
 ROUND_FILL = 0.06  # Share by which a silhouette may differ from its ellipse and count as round.
 

@@ -24,10 +24,8 @@ Array = NDArray[np.float64]
 MAX_PARTS = 24
 MAX_DRAWN_FACES = 60_000
 MAX_CUT_FACES = 4_000  # CoACD's time grows with them; its own closing makes as many.
-CRUMPLED = (
-    2.0  # Area, in those of the hull, above which half of them must do: a cup has 1.8, a bath
-)
-# sponge 2.8, which took ten minutes.
+CRUMPLED = 2.0  # Area, in those of the hull, above which half of the faces must do: a cup has 1.8,
+# a bath sponge 2.8, which took ten minutes.
 CONVEX_SHARE = 0.94  # A closed mesh that fills its hull so far is one part.
 CONCAVITY = 0.001  # [m] that CoACD leaves in a part, as it measures it,
 MAX_CONCAVITY = 0.1  # at most and at least in halves of the longest extent: finer takes long,
